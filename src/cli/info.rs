@@ -1,0 +1,99 @@
+//! `info`: the numbers of a scene.
+
+use std::io;
+use std::time::Instant;
+
+use serde_json::json;
+
+use super::args::InfoArgs;
+use super::console::Console;
+use super::error::Failure;
+use super::jobs::Jobs;
+use crate::export::{Pov, Templates};
+use crate::scene;
+use crate::skeleton::measure;
+
+/// A writer that counts.
+#[derive(Default)]
+struct Count(u64);
+
+impl io::Write for Count {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0 += bytes.len() as u64;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
+    let jobs = Jobs::new(&args.scene, console)?;
+    for job in &jobs.list {
+        let mut seconds = Vec::new();
+        let mut clock = Instant::now();
+        let mut lap = |stage: &'static str| {
+            seconds.push((stage, clock.elapsed().as_secs_f64()));
+            clock = Instant::now();
+        };
+        let scene = jobs.load(job)?;
+        lap("load");
+        let progress = console.progress(job.name());
+        let grown = jobs.grow(&scene, &[], console, &progress)?;
+        console.done();
+        lap("grow");
+        let model = scene::model(&scene, &grown, scene.size)?;
+        lap("model");
+        let mut count = Count::default();
+        Pov::new(&model, &Templates::default(), "scene", scene.size, &job.origin(scene.seed, "info"))
+            .write_inc(&mut count)
+            .map_err(|e| Failure::Usage(e.to_string()))?;
+        lap("export");
+
+        let steps: Vec<_> = grown
+            .iter()
+            .map(|step| {
+                json!({
+                    "step": step.name,
+                    "nodes": step.nodes,
+                    "edges": step.edges,
+                    "settled": step.settled,
+                    "dropped": step.dropped,
+                    "skeleton": measure(&step.skeleton),
+                })
+            })
+            .collect();
+        let all = json!({
+            "scene": job.name(),
+            "title": scene.title,
+            "seed": scene.seed,
+            "nodes": grown.iter().map(|s| s.nodes).sum::<u64>(),
+            "edges": grown.iter().map(|s| s.edges).sum::<u64>(),
+            "endpoints": grown.iter().map(|s| s.skeleton.paths.len()).sum::<usize>(),
+            "primitives": model.primitives(),
+            "bytes": { "needed": scene.bytes_needed(), "pov": count.0 },
+            "seconds": seconds.iter().map(|(stage, s)| ((*stage).to_owned(), json!(s))).collect::<serde_json::Map<_, _>>(),
+            "steps": steps,
+        });
+        if console.json {
+            console.result(&all);
+            continue;
+        }
+        console.line(&format!("{}: {} (seed {})", job.name(), scene.title, scene.seed));
+        for step in &grown {
+            let m = measure(&step.skeleton);
+            console.line(&format!(
+                "  {}: {} nodes, {} edges, {} settled; {} endpoints, {} dropped; {} skeleton nodes, tortuosity {:.3}, spread {:.3}",
+                step.name, step.nodes, step.edges, step.settled, m.endpoints, step.dropped, m.nodes, m.tortuosity, m.spread
+            ));
+        }
+        console.line(&format!(
+            "  {} primitives, {:.1} MB as POV-Ray, {:.1} MB of memory at most",
+            model.primitives(), count.0 as f64 / 1e6, scene.bytes_needed() as f64 / 1e6
+        ));
+        let times: Vec<_> = seconds.iter().map(|(stage, s)| format!("{stage} {s:.3} s")).collect();
+        console.line(&format!("  {}", times.join(", ")));
+    }
+    Ok(())
+}

@@ -1,0 +1,254 @@
+//! Many at once: scenes, seeds and sweeps become jobs, each with its own output.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use super::args::{SceneArgs, Seeds, Sweep};
+use super::console::Console;
+use super::error::Failure;
+use super::memory;
+use crate::export::Origin;
+use crate::files::{Folder, embedded_scenes};
+use crate::grow::{Grown, MarkKind};
+use crate::math::{Progress, unknown};
+use crate::model::Model;
+use crate::scene::{self, Override, Resolved, Source};
+
+/// A scene file may have this many bytes.
+const MOST_BYTES: u64 = 4 << 20;
+
+/// One scene with one seed and one value of everything that is swept.
+#[derive(Clone, Debug)]
+pub struct Job {
+    source: Source,
+    overrides: Vec<Override>,
+    /// The scene's name as it was given, for headers.
+    given: String,
+    /// What patterns stand for: `scene`, `seed`, and each swept path, whole and its last key.
+    values: BTreeMap<String, String>,
+    /// What tells this job from the others, in words.
+    pub label: String,
+}
+
+/// All jobs of a call.
+pub struct Jobs {
+    /// The jobs, in order.
+    pub list: Vec<Job>,
+    /// The pattern that tells their outputs apart.
+    pub pattern: String,
+    size: Option<[u32; 2]>,
+    max_memory: u64,
+}
+
+/// The text of the scene called `name`: a file, or else an embedded one.
+pub fn find_scene(name: &str, console: &Console) -> Result<Source, Failure> {
+    let embedded = embedded_scenes();
+    let inside = embedded.iter().find(|(known, ..)| known == name);
+    let candidates = [PathBuf::from(name), PathBuf::from(format!("{name}.toml"))];
+    let file = candidates.iter().find(|path| path.is_file());
+    if let Some(path) = file {
+        if inside.is_some() {
+            console.note(&format!("note: taking the file {}, not the embedded scene `{name}`", path.display()));
+        }
+        return read_scene(path);
+    }
+    if let Some((name, text, folder)) = inside {
+        return Ok(Source {
+            name: name.clone(),
+            text: (*text).to_owned(),
+            folder: folder.clone(),
+        });
+    }
+    let hint = unknown("scene file or embedded scene", name, embedded.iter().map(|(name, ..)| name));
+    Err(Failure::Usage(hint))
+}
+
+fn read_scene(path: &Path) -> Result<Source, Failure> {
+    let wrong = |error: &std::io::Error| Failure::file("read", path, error);
+    let size = path.metadata().map_err(|e| wrong(&e))?.len();
+    if size > MOST_BYTES {
+        return Err(Failure::Usage(format!("{} has {size} bytes: that is no scene", path.display())));
+    }
+    let text = std::fs::read(path).map_err(|e| wrong(&e))?;
+    let text = String::from_utf8(text)
+        .map_err(|_| Failure::Usage(format!("{} is not UTF-8 text: that is no scene", path.display())))?;
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    Ok(Source {
+        name: path.display().to_string(),
+        text,
+        folder: Folder::Disk(folder.to_owned()),
+    })
+}
+
+impl Jobs {
+    pub fn new(args: &SceneArgs, console: &Console) -> Result<Self, Failure> {
+        let seeds: Vec<Option<u64>> = match (&args.seeds, args.seed) {
+            (Some(Seeds(seeds)), _) => seeds.iter().map(|&s| Some(s)).collect(),
+            (None, seed) => vec![seed],
+        };
+        let mut list = Vec::new();
+        for given in &args.scenes {
+            let source = find_scene(given, console)?;
+            let stem = Path::new(given).file_stem().map_or("scene".into(), |s| s.to_string_lossy());
+            for &seed in &seeds {
+                for choice in choices(&args.sweep) {
+                    let mut overrides = args.set.clone();
+                    let mut values = BTreeMap::from([("scene".to_owned(), stem.to_string())]);
+                    let mut label = Vec::new();
+                    if let Some(seed) = seed {
+                        overrides.push(Override { path: "seed".to_owned(), value: seed.to_string() });
+                        values.insert("seed".to_owned(), seed.to_string());
+                    }
+                    if args.scenes.len() > 1 {
+                        label.push(stem.to_string());
+                    }
+                    if seeds.len() > 1 {
+                        label.push(format!("seed {}", seed.unwrap_or_default()));
+                    }
+                    for (path, value) in choice {
+                        overrides.push(Override { path: path.to_owned(), value: value.to_owned() });
+                        let key = path.rsplit('.').next().unwrap_or(path);
+                        label.push(format!("{key} {value}"));
+                        for name in [path, key] {
+                            values.insert(name.to_owned(), value.to_owned());
+                        }
+                    }
+                    list.push(Job {
+                        source: source.clone(),
+                        overrides,
+                        given: given.clone(),
+                        values,
+                        label: label.join(", "),
+                    });
+                }
+            }
+        }
+        let mut pattern = "{scene}".to_owned();
+        if seeds.len() > 1 {
+            pattern.push_str("_{seed}");
+        }
+        for sweep in args.sweep.iter().filter(|sweep| sweep.values.len() > 1) {
+            pattern.push_str(&format!("_{{{}}}", sweep.path));
+        }
+        Ok(Self {
+            list,
+            pattern,
+            size: args.size,
+            max_memory: args.max_memory.unwrap_or_else(memory::default_limit),
+        })
+    }
+
+    /// The output of each job by `pattern`.
+    pub fn outputs(&self, pattern: &str) -> Result<Vec<String>, Failure> {
+        let outputs: Vec<String> =
+            self.list.iter().map(|job| fill(pattern, &job.values)).collect::<Result<_, _>>().map_err(Failure::Usage)?;
+        let mut seen = BTreeMap::new();
+        for (output, job) in outputs.iter().zip(&self.list) {
+            if let Some(other) = seen.insert(output, job) {
+                return Err(Failure::Usage(format!(
+                    "`{output}` would be written twice ({} and {}): put {} in its name",
+                    other.label, job.label, self.pattern
+                )));
+            }
+        }
+        Ok(outputs)
+    }
+
+    /// Reads the scene of `job`; its size is the call's or the scene's own.
+    pub fn load(&self, job: &Job) -> Result<Resolved, Failure> {
+        let mut scene = scene::load(&job.source, &job.overrides)?;
+        if let Some(size) = self.size {
+            scene.size = size;
+        }
+        Ok(scene)
+    }
+
+    /// Grows a scene.
+    pub fn grow(&self, scene: &Resolved, show: &[MarkKind], console: &Console, progress: &Progress) -> Result<Vec<Grown>, Failure> {
+        let grown = scene::grow(scene, show, self.max_memory, progress)?;
+        for step in grown.iter().filter(|step| step.dropped > 0) {
+            console.note(&format!("warning: step `{}` dropped {} endpoints that no path reaches", step.name, step.dropped));
+        }
+        Ok(grown)
+    }
+
+    /// The whole way from a job to its model.
+    pub fn model(&self, scene: &Resolved, show: &[MarkKind], console: &Console, progress: &Progress) -> Result<Model, Failure> {
+        let grown = self.grow(scene, show, console, progress)?;
+        Ok(scene::model(scene, &grown, scene.size)?)
+    }
+
+    /// May a scene take this much memory?
+    pub fn max_memory(&self) -> u64 {
+        self.max_memory
+    }
+}
+
+impl Job {
+    /// The scene's name in messages.
+    pub fn name(&self) -> &str {
+        &self.source.name
+    }
+
+    /// The command that repeats what was made, without paths.
+    pub fn origin(&self, seed: u64, verb: &str) -> Origin {
+        let scene = Path::new(&self.given).file_name().map_or("scene".into(), |n| n.to_string_lossy());
+        let scene = if self.source.name == self.given { self.given.as_str().into() } else { scene };
+        let sets = self.overrides.iter().filter(|o| o.path != "seed").map(|o| format!(" --set {}={}", o.path, o.value));
+        Origin {
+            command: format!("lichtenberg {verb} {scene} --seed {seed}{}", sets.collect::<String>()),
+            seed,
+        }
+    }
+}
+
+/// Every combination of one value each.
+fn choices(sweeps: &[Sweep]) -> Vec<Vec<(&str, &str)>> {
+    sweeps.iter().fold(vec![Vec::new()], |all, sweep| {
+        let mut more = Vec::new();
+        for chosen in &all {
+            for value in &sweep.values {
+                let mut chosen: Vec<(&str, &str)> = chosen.clone();
+                chosen.push((&sweep.path, value));
+                more.push(chosen);
+            }
+        }
+        more
+    })
+}
+
+/// `pattern` with each `{key}` replaced.
+fn fill(pattern: &str, values: &BTreeMap<String, String>) -> Result<String, String> {
+    let mut out = String::new();
+    let mut rest = pattern;
+    while let Some((before, after)) = rest.split_once('{') {
+        let (key, tail) = after.split_once('}').ok_or_else(|| format!("`{pattern}` has a {{ without its }}"))?;
+        let value = values.get(key).ok_or_else(|| unknown("value for the pattern", key, values.keys()))?;
+        out.push_str(before);
+        // Values may be lists or text with separators; a name may not.
+        out.extend(value.chars().map(|c| if c.is_alphanumeric() || "._-+".contains(c) { c } else { '-' }));
+        rest = tail;
+    }
+    out.push_str(rest);
+    Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns_are_filled() {
+        let values = BTreeMap::from([("scene".to_owned(), "elm".to_owned()), ("a.b".to_owned(), "[1, 2]".to_owned())]);
+        assert_eq!(fill("out/{scene}_{a.b}.png", &values).unwrap(), "out/elm_-1--2-.png");
+        assert!(fill("{scen}", &values).unwrap_err().contains("did you mean `scene`"));
+        assert!(fill("{scene", &values).is_err());
+    }
+
+    #[test]
+    fn sweeps_multiply() {
+        let sweep = |path: &str, values: &[&str]| Sweep { path: path.to_owned(), values: values.iter().map(|v| (*v).to_owned()).collect() };
+        assert_eq!(choices(&[sweep("a", &["1", "2"]), sweep("b", &["x", "y", "z"])]).len(), 6);
+        assert_eq!(choices(&[]).len(), 1);
+    }
+}

@@ -1,0 +1,12 @@
+//! Exporters: from a [`crate::model::Model`] to text, written to any [`std::io::Write`]. They open no files.
+
+mod decimal;
+mod identifier;
+mod pov;
+mod svg;
+mod templates;
+
+pub use identifier::identifier;
+pub use pov::{Origin, Pov};
+pub use svg::{SvgOptions, write_svg};
+pub use templates::{TemplateError, Templates};

@@ -1,0 +1,161 @@
+//! Schematics: black tapered strokes on white, as in the papers, and construction drawings.
+
+use std::io::{self, Write};
+
+use super::identifier::plain;
+use crate::grow::{Mark, MarkKind};
+use crate::math::{Colour, DVec2, DVec3};
+use crate::model::{Camera, Material, Model, Projected};
+
+/// How a schematic is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct SvgOptions {
+    /// Size of the picture, in pixels.
+    pub size: [u32; 2],
+}
+
+/// No stroke is drawn thinner than this radius, in pixels: it would vanish.
+const HAIRLINE: f64 = 0.35;
+
+/// Writes `model`, seen from its camera, as an SVG picture.
+///
+/// # Errors
+/// What `out` says.
+pub fn write_svg(model: &Model, options: SvgOptions, mut out: impl Write) -> io::Result<()> {
+    let [width, height] = options.size;
+    writeln!(
+        out,
+        r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}">"#
+    )?;
+    writeln!(out, "<title>{}</title>", escape(&plain(&model.title)))?;
+    writeln!(out, r##"<rect width="{width}" height="{height}" fill="#fff"/>"##)?;
+    let view = View { camera: &model.camera, size: options.size };
+    // What paths run over comes first, what they run between last.
+    for kind in [MarkKind::Nodes, MarkKind::Edges, MarkKind::Contours, MarkKind::Shapes] {
+        write_marks(&model.marks, kind, view, &mut out)?;
+    }
+    for object in &model.objects {
+        let (_, material) = &model.materials[object.material];
+        write!(out, r#"<path fill="{}" d=""#, ink(material))?;
+        let balls: Vec<Option<Disc>> = object
+            .balls
+            .iter()
+            .map(|ball| view.disc(object.foot + ball.centre, ball.radius))
+            .collect();
+        for &[a, b] in &object.segments {
+            if let (Some(a), Some(b)) = (balls[a as usize], balls[b as usize]) {
+                write_stroke(a, b, &mut out)?;
+            }
+        }
+        // Balls within strokes are drawn with them already.
+        if object.segments.is_empty() {
+            for disc in balls.into_iter().flatten() {
+                write_stroke(disc, disc, &mut out)?;
+            }
+        }
+        writeln!(out, r#""/>"#)?;
+    }
+    write_marks(&model.marks, MarkKind::Endpoints, view, &mut out)?;
+    writeln!(out, "</svg>")
+}
+
+/// A ball as it is seen, in pixels.
+#[derive(Clone, Copy)]
+struct Disc {
+    centre: DVec2,
+    radius: f64,
+}
+
+#[derive(Clone, Copy)]
+struct View<'a> {
+    camera: &'a Camera,
+    size: [u32; 2],
+}
+
+impl View<'_> {
+    fn disc(&self, centre: DVec3, radius: f64) -> Option<Disc> {
+        let Projected { x, y, scale, .. } = self.camera.project(centre)?;
+        let [width, height] = self.size.map(f64::from);
+        Some(Disc {
+            centre: DVec2::new(x * width, y * height),
+            radius: (radius * scale * width).max(HAIRLINE),
+        })
+    }
+}
+
+/// The outline of a round cone seen from the side: two arcs and the tangents between them, clockwise.
+fn write_stroke(a: Disc, b: Disc, out: &mut impl Write) -> io::Result<()> {
+    let way = b.centre - a.centre;
+    let length = way.length();
+    let sin = (a.radius - b.radius) / length;
+    if !(sin.abs() < 1.0) {
+        let Disc { centre: c, radius: r } = if a.radius > b.radius { a } else { b };
+        return writeln!(out, "M{:.2} {:.2}a{r:.2} {r:.2} 0 1 1 {:.2} 0a{r:.2} {r:.2} 0 1 1 {:.2} 0z", c.x - r, c.y, 2.0 * r, -2.0 * r);
+    }
+    let (u, cos) = (way / length, libm::sqrt(1.0 - sin * sin));
+    let side = DVec2::new(-u.y, u.x);
+    // Where the tangents touch, on one side and the other.
+    let touch = |disc: Disc, sign: f64| disc.centre + (u * sin + side * (sign * cos)) * disc.radius;
+    let [a1, b1, b2, a2] = [touch(a, -1.0), touch(b, -1.0), touch(b, 1.0), touch(a, 1.0)];
+    let (ra, rb) = (a.radius, b.radius);
+    // The larger disc shows more than half of itself.
+    let (large_a, large_b) = (u8::from(ra > rb), u8::from(rb > ra));
+    writeln!(
+        out,
+        "M{:.2} {:.2}L{:.2} {:.2}A{rb:.2} {rb:.2} 0 {large_b} 1 {:.2} {:.2}L{:.2} {:.2}A{ra:.2} {ra:.2} 0 {large_a} 1 {:.2} {:.2}z",
+        a1.x, a1.y, b1.x, b1.y, b2.x, b2.y, a2.x, a2.y, a1.x, a1.y
+    )
+}
+
+fn write_marks(marks: &[Mark], kind: MarkKind, view: View<'_>, out: &mut impl Write) -> io::Result<()> {
+    let pixels = f64::from(view.size[0].min(view.size[1])) / 600.0;
+    let (colour, width, radius) = match kind {
+        MarkKind::Nodes => ("#888", 0.0, 1.2),
+        MarkKind::Edges => ("#ccc", 0.6, 0.0),
+        MarkKind::Endpoints => ("#c22", 1.5, 4.0),
+        MarkKind::Shapes => ("#38c", 1.2, 0.0),
+        MarkKind::Contours => ("#c84", 0.8, 0.0),
+    };
+    let mut lines = String::new();
+    let mut dots = Vec::new();
+    for mark in marks.iter().filter(|mark| mark.kind == kind) {
+        let points: Vec<DVec2> = mark.line.iter().filter_map(|&p| view.disc(p, 0.0)).map(|d| d.centre).collect();
+        match points[..] {
+            [] => {}
+            [p] => dots.push(p),
+            _ => {
+                for (i, p) in points.iter().enumerate() {
+                    let command = if i == 0 { 'M' } else { 'L' };
+                    lines.push_str(&format!("{command}{:.2} {:.2}", p.x, p.y));
+                }
+            }
+        }
+    }
+    if !lines.is_empty() {
+        let width = width * pixels;
+        writeln!(out, r#"<path fill="none" stroke="{colour}" stroke-width="{width:.2}" stroke-linecap="round" d="{lines}"/>"#)?;
+    }
+    if !dots.is_empty() {
+        let (fill, stroke) = if kind == MarkKind::Endpoints { ("#fff", colour) } else { (colour, "none") };
+        writeln!(out, r#"<g fill="{fill}" stroke="{stroke}" stroke-width="{:.2}">"#, width * pixels)?;
+        for p in dots {
+            writeln!(out, r#"<circle cx="{:.2}" cy="{:.2}" r="{:.2}"/>"#, p.x, p.y, radius * pixels)?;
+        }
+        writeln!(out, "</g>")?;
+    }
+    Ok(())
+}
+
+/// Ink: a material that glows in its own colour keeps it, everything else is black.
+fn ink(material: &Material) -> String {
+    if material.emission == 0.0 {
+        return "#000".to_owned();
+    }
+    let Colour(rgb) = material.colour;
+    let [r, g, b] = rgb.map(|c| Colour::to_srgb(c * material.emission));
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}

@@ -1,0 +1,129 @@
+//! Pictures: PNG in and out, JPEG in.
+
+use std::io::{self, Cursor, Write};
+
+use image::{DynamicImage, ImageReader, Limits};
+
+use crate::raster::Grey;
+
+/// Pixels along a side of a picture that is read, at most.
+const MOST_SIDE: u32 = 32_768;
+/// Memory that decoding a picture may take.
+const MOST_BYTES: u64 = 2 << 30;
+
+/// A picture of 8 bits a channel, not premultiplied, row by row from the top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Rgba {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Four bytes a pixel.
+    pub bytes: Vec<u8>,
+}
+
+impl Rgba {
+    /// A white picture.
+    #[must_use]
+    pub fn white(width: u32, height: u32) -> Self {
+        Self {
+            width,
+            height,
+            bytes: vec![255; width as usize * height as usize * 4],
+        }
+    }
+
+    /// Copies `other`, laid over white, to `(x, y)`; what falls outside is lost.
+    pub fn paste(&mut self, other: &Self, x: u32, y: u32) {
+        for row in 0..other.height.min(self.height.saturating_sub(y)) {
+            for column in 0..other.width.min(self.width.saturating_sub(x)) {
+                let from = (row as usize * other.width as usize + column as usize) * 4;
+                let to = ((y + row) as usize * self.width as usize + (x + column) as usize) * 4;
+                let alpha = u32::from(other.bytes[from + 3]);
+                for channel in 0..3 {
+                    let over = u32::from(other.bytes[from + channel]) * alpha;
+                    let under = u32::from(self.bytes[to + channel]) * (255 - alpha);
+                    self.bytes[to + channel] = ((over + under + 127) / 255) as u8;
+                }
+            }
+        }
+    }
+}
+
+fn decode(bytes: &[u8]) -> Result<DynamicImage, String> {
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+    if reader.format().is_none() {
+        return Err("it is not a PNG or JPEG picture".to_owned());
+    }
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MOST_SIDE);
+    limits.max_image_height = Some(MOST_SIDE);
+    limits.max_alloc = Some(MOST_BYTES);
+    reader.limits(limits);
+    reader.decode().map_err(|e| format!("it cannot be decoded: {e}"))
+}
+
+/// The greyscale picture in `bytes` (PNG or JPEG); colours become their luma, values stay as encoded.
+///
+/// # Errors
+/// A sentence: no picture, truncated, or too large.
+pub fn decode_grey(bytes: &[u8]) -> Result<Grey, String> {
+    let picture = decode(bytes)?.into_luma16();
+    let (width, height) = picture.dimensions();
+    let values = picture.into_raw().into_iter().map(|v| f32::from(v) / 65535.0).collect();
+    Grey::new(width, height, values).ok_or_else(|| "it has no pixels".to_owned())
+}
+
+/// The PNG picture in `bytes`.
+///
+/// # Errors
+/// As [`decode_grey`].
+pub fn decode_png(bytes: &[u8]) -> Result<Rgba, String> {
+    let picture = decode(bytes)?.into_rgba8();
+    let (width, height) = picture.dimensions();
+    Ok(Rgba { width, height, bytes: picture.into_raw() })
+}
+
+/// `picture` scaled to fit `width` by `height`, its aspect kept.
+#[must_use]
+pub fn resize(picture: &Rgba, width: u32, height: u32) -> Rgba {
+    let Some(buffer) = image::RgbaImage::from_raw(picture.width, picture.height, picture.bytes.clone()) else {
+        return picture.clone();
+    };
+    let scaled = DynamicImage::from(buffer).resize(width, height, image::imageops::FilterType::CatmullRom).into_rgba8();
+    let (width, height) = scaled.dimensions();
+    Rgba { width, height, bytes: scaled.into_raw() }
+}
+
+/// Writes `picture` as a PNG with sRGB colours and these texts (keyword, text).
+///
+/// # Errors
+/// What `out` says.
+pub fn encode_png(picture: &Rgba, texts: &[(&str, &str)], out: impl Write) -> io::Result<()> {
+    let mut encoder = png::Encoder::new(out, picture.width, picture.height);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    for (keyword, text) in texts {
+        encoder.add_itxt_chunk((*keyword).to_owned(), (*text).to_owned()).map_err(io::Error::other)?;
+    }
+    let mut writer = encoder.write_header().map_err(io::Error::other)?;
+    writer.write_image_data(&picture.bytes).map_err(io::Error::other)?;
+    writer.finish().map_err(io::Error::other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn png_round_trip() {
+        let mut picture = Rgba::white(3, 2);
+        picture.bytes[5] = 7;
+        let mut bytes = Vec::new();
+        encode_png(&picture, &[("Software", "a test")], &mut bytes).unwrap();
+        assert_eq!(decode_png(&bytes).unwrap(), picture);
+        assert!(decode_png(&bytes[..40]).is_err());
+        assert!(decode_grey(b"no picture").unwrap_err().contains("not a PNG"));
+    }
+}

@@ -1,0 +1,170 @@
+//! Edge weights: `R^alpha` (Xu and Mould 2008, eq. 1), as a table of fixed-point integers indexed by a hash of the edge.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::math::power;
+
+/// Entries of a table: the resolution of R. A hash's top 12 bits choose one.
+pub(super) const ENTRIES: usize = 1 << 12;
+/// Fractional bits of a weight, where the largest weight leaves room for them.
+const FRACTION: u32 = 12;
+/// Fewer fractional bits than this would show: 1/16 of the least weight.
+const LEAST_FRACTION: u32 = 4;
+/// A weight takes at most this many bits, so that costs can be compared modulo the bits of a cell.
+const WEIGHT_BITS: u32 = 24;
+
+/// The distribution of an edge's random part, `R^alpha` with R uniform in (1, max).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Weights {
+    /// Upper end of the range of R. Xu and Mould 2007's `1 + r U` is `max = 1 + r`.
+    #[schemars(range(min = 1.0, max = 1e6))]
+    pub max: f64,
+    /// How much paths vary: 0.3 is nearly straight, 1 slightly winding, 3 erratic (Fig. 2 of 2008).
+    #[schemars(range(min = 0.0, max = 1e3))]
+    pub alpha: f64,
+}
+
+impl Default for Weights {
+    fn default() -> Self {
+        Self {
+            max: 10.0,
+            alpha: 1.0,
+        }
+    }
+}
+
+/// Why weights cannot be used.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum WeightError {
+    /// The largest weight is out of range.
+    #[error(
+        "an edge may weigh up to {largest:.3e}, which is more than {limit}: lower alpha, max or the cost fields"
+    )]
+    TooLarge {
+        /// The largest weight an edge can have.
+        largest: f64,
+        /// The largest that can be planned with.
+        limit: u32,
+    },
+}
+
+/// The bounds of a graph's weights, as fixed-point integers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WeightRange {
+    /// No edge weighs less; never 0.
+    pub least: u32,
+    /// No edge weighs more; below 2^24.
+    pub most: u32,
+    /// Fractional bits: a weight w stands for `w / 2^fraction`.
+    pub fraction: u32,
+}
+
+impl WeightRange {
+    /// The real number that the fixed-point `cost` stands for.
+    #[must_use]
+    pub fn real(self, cost: u64) -> f64 {
+        cost as f64 / f64::from(1_u32 << self.fraction)
+    }
+}
+
+/// `R^alpha` times the length of an edge, for each of up to three lengths.
+#[derive(Clone, Debug)]
+pub struct WeightTable {
+    entries: Box<[[u32; ENTRIES]; 3]>,
+    fraction: u32,
+}
+
+impl WeightTable {
+    /// Tables for edges of length 1, sqrt 2 and sqrt 3.
+    ///
+    /// `largest_factor` and `largest_sum` bound what cost fields multiply and add, so that the number of fractional
+    /// bits follows from the largest weight and never from the size of the lattice.
+    ///
+    /// # Errors
+    /// [`WeightError::TooLarge`] when weights leave less than four fractional bits.
+    pub fn new(
+        weights: Weights,
+        largest_factor: f64,
+        largest_sum: f64,
+    ) -> Result<Self, WeightError> {
+        let largest = (power(weights.max, weights.alpha) * largest_factor + largest_sum) * length(2);
+        let limit = 1_u32 << (WEIGHT_BITS - LEAST_FRACTION);
+        // Negated, so that a NaN fails too.
+        if !(largest < f64::from(limit)) {
+            return Err(WeightError::TooLarge { largest, limit });
+        }
+        let mut fraction = FRACTION;
+        while largest * f64::from(1_u32 << fraction) >= f64::from(1_u32 << WEIGHT_BITS) {
+            fraction -= 1;
+        }
+        let mut entries = Box::new([[0; ENTRIES]; 3]);
+        for (class, row) in entries.iter_mut().enumerate() {
+            for (i, entry) in row.iter_mut().enumerate() {
+                let r = 1.0 + (weights.max - 1.0) * ((i as f64 + 0.5) / ENTRIES as f64);
+                *entry = fixed(power(r, weights.alpha) * length(class), fraction);
+            }
+        }
+        Ok(Self { entries, fraction })
+    }
+
+    /// Fractional bits of every entry.
+    #[must_use]
+    pub fn fraction(&self) -> u32 {
+        self.fraction
+    }
+
+    /// The entry that the hash `h` of an edge of length class `class` (0: 1, 1: sqrt 2, 2: sqrt 3) chooses.
+    #[inline(always)]
+    pub(super) fn entry(&self, class: usize, h: u64) -> u32 {
+        self.entries[class][(h >> 52) as usize]
+    }
+
+    /// The smallest and largest entry of the first `classes` length classes.
+    pub(super) fn bounds(&self, classes: usize) -> (u32, u32) {
+        // R^alpha grows with R, and lengths grow with the class.
+        (self.entries[0][0], self.entries[classes - 1][ENTRIES - 1])
+    }
+}
+
+/// Length of an edge in lattice steps: the square root of how many coordinates change, less one the class.
+pub(super) fn length(class: usize) -> f64 {
+    [1.0, std::f64::consts::SQRT_2, 1.732_050_807_568_877_2][class]
+}
+
+/// The nearest fixed-point integer to `x`, which must be in range.
+pub(super) fn fixed(x: f64, fraction: u32) -> u32 {
+    libm::floor(x * f64::from(1_u32 << fraction) + 0.5) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The tables must have the same bits on every platform and in every release of an edition.
+    #[test]
+    fn tables_are_pinned() {
+        let sum = |max, alpha| {
+            let table = WeightTable::new(Weights { max, alpha }, 1.0, 0.0).unwrap();
+            table
+                .entries
+                .iter()
+                .flatten()
+                .fold(0_u64, |sum, &e| sum.rotate_left(5) ^ u64::from(e))
+        };
+        assert_eq!(
+            [sum(10.0, 0.3), sum(10.0, 1.0), sum(10.0, 3.0), sum(11.0, 1.0)],
+            [0, 0, 0, 0]
+        );
+    }
+
+    #[test]
+    fn fraction_follows_the_largest_weight() {
+        let fraction = |alpha| WeightTable::new(Weights { max: 10.0, alpha }, 1.0, 0.0).map(|t| t.fraction());
+        assert_eq!(fraction(1.0), Ok(12));
+        assert_eq!(fraction(3.0), Ok(12));
+        assert_eq!(fraction(5.0), Ok(6));
+        assert!(fraction(1000.0).is_err());
+        assert!(fraction(f64::NAN).is_err());
+    }
+}

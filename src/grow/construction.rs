@@ -1,0 +1,182 @@
+//! What the papers' construction figures draw: nodes, edges, endpoints, shapes and contours of cost.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Source, Step};
+use crate::geom::Shape;
+use crate::graph::{Graph, Lattice, Node};
+use crate::math::DVec3;
+use crate::plan::Plan;
+
+/// More nodes or edges than this make a drawing that is black all over.
+const MOST_DRAWN: u64 = 250_000;
+/// Lines of equal cost between the least and the greatest (2007, Fig. 2 left).
+const CONTOURS: u32 = 16;
+/// Samples along the longer side of a section through a shape.
+const SECTION: u32 = 256;
+
+/// A kind of mark in a construction drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MarkKind {
+    /// A dot a node of the graph.
+    Nodes,
+    /// A line an edge.
+    Edges,
+    /// A ring an endpoint, a disc a generator.
+    Endpoints,
+    /// Outlines of the space, of what it forbids, and of where endpoints are placed.
+    Shapes,
+    /// Lines of equal path cost; in space, on the upright plane through the first generator.
+    Contours,
+}
+
+/// One mark: a polyline, or a dot where it has a single point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    /// What it stands for.
+    pub kind: MarkKind,
+    /// Its points, in scene units.
+    pub line: Vec<DVec3>,
+}
+
+/// The marks of a step, of the kinds in `show`.
+///
+/// # Errors
+/// A sentence where there is too much to draw.
+pub(super) fn construction<const N: usize>(
+    step: &Step,
+    plan: &Plan<'_, Lattice<N>>,
+    endpoints: &[Node],
+    show: &[MarkKind],
+) -> Result<Vec<Mark>, String> {
+    let lattice = plan.graph();
+    let mut marks = Vec::new();
+    for &kind in show {
+        let mut add = |line: Vec<DVec3>| marks.push(Mark { kind, line });
+        match kind {
+            MarkKind::Nodes | MarkKind::Edges => {
+                let is_edges = kind == MarkKind::Edges;
+                let count = if is_edges { lattice.count_edges() } else { lattice.open_nodes() };
+                if count > MOST_DRAWN {
+                    let what = if is_edges { "edges" } else { "nodes" };
+                    return Err(format!(
+                        "{count} {what} are too many to draw ({MOST_DRAWN} at most): use a wider spacing"
+                    ));
+                }
+                for node in lattice.nodes() {
+                    let from = lattice.position(node);
+                    if !is_edges {
+                        add(vec![from]);
+                        continue;
+                    }
+                    // Each edge once: from the end with the lower name.
+                    lattice.edges(node, |edge| {
+                        if node < edge.node {
+                            add(vec![from, lattice.position(edge.node)]);
+                        }
+                    });
+                }
+            }
+            MarkKind::Endpoints => endpoints.iter().for_each(|&node| add(vec![lattice.position(node)])),
+            MarkKind::Shapes => {
+                let mut shapes = vec![&step.space.shape];
+                shapes.extend(&step.space.forbid);
+                shapes.extend(step.endpoints.iter().filter_map(|set| match &set.placement {
+                    super::Placement::Random { inside, .. } => Some(inside),
+                    super::Placement::At(_) => None,
+                }));
+                if let Source::Inside(shape) = &step.source {
+                    shapes.push(shape);
+                }
+                for shape in shapes {
+                    sections(shape, lattice.is_plane()).into_iter().for_each(&mut add);
+                }
+            }
+            MarkKind::Contours => cost_contours(step, plan).into_iter().for_each(&mut add),
+        }
+    }
+    Ok(marks)
+}
+
+/// Lines of equal cost on the plane, or on the upright plane through the first generator.
+fn cost_contours<const N: usize>(step: &Step, plan: &Plan<'_, Lattice<N>>) -> Vec<Vec<DVec3>> {
+    let lattice = plan.graph();
+    let window = lattice.window();
+    let range = lattice.weight_range();
+    let root = match &step.source {
+        Source::At(points) => points[0],
+        Source::Inside(shape) => shape.bounds().centre(),
+    };
+    let up = step.space.up();
+    let depth = if up == 1 { 0 } else { window.nearest(root).map_or(window.size[1] / 2, |at| at[1]) };
+    let size = [window.size[0], window.size[up]];
+    let at = |x: u32, y: u32| if up == 1 { [x, y, 0] } else { [x, depth, y] };
+    let nodes = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
+    let costs = plan.costs(nodes.map(|(x, y)| lattice.node(at(x, y))).filter(|&n| lattice.is_open(n)));
+    let cost = |x: u32, y: u32| {
+        costs[lattice.cell(lattice.node(at(x, y)))].map_or(f64::NAN, |cost| range.real(cost))
+    };
+    let most = costs.iter().flatten().max().map_or(0.0, |&cost| range.real(cost));
+    let place = |x: f64, y: f64| {
+        let low = window.position(at(0, 0));
+        let mut p = low;
+        p.x += x * window.spacing;
+        p[up] += y * window.spacing;
+        p
+    };
+    (1..=CONTOURS)
+        .flat_map(|line| contour(size, |x, y| cost(x, y) - most * f64::from(line) / f64::from(CONTOURS + 1)))
+        .map(|segment| segment.map(|[x, y]| place(x, y)).to_vec())
+        .collect()
+}
+
+/// Outlines of a shape: of itself in the plane, of its three middle sections in space.
+fn sections(shape: &Shape, is_plane: bool) -> Vec<Vec<DVec3>> {
+    let bounds = shape.bounds();
+    let planes: &[[usize; 2]] = if is_plane { &[[0, 1]] } else { &[[0, 2], [1, 2], [0, 1]] };
+    let middle = if is_plane { bounds.centre().with_z(0.0) } else { bounds.centre() };
+    let mut lines = Vec::new();
+    for &[across, up] in planes {
+        let extent = [bounds.size()[across], bounds.size()[up]];
+        let step = extent[0].max(extent[1]) / f64::from(SECTION);
+        // A margin of two samples, so that every outline is closed.
+        let size = extent.map(|e| libm::ceil(e / step) as u32 + 5);
+        let place = |x: f64, y: f64| {
+            let mut p = middle;
+            p[across] = bounds.min[across] + (x - 2.0) * step;
+            p[up] = bounds.min[up] + (y - 2.0) * step;
+            p
+        };
+        let value = |x: u32, y: u32| shape.distance(place(f64::from(x), f64::from(y)));
+        lines.extend(contour(size, value).into_iter().map(|s| s.map(|[x, y]| place(x, y)).to_vec()));
+    }
+    lines
+}
+
+/// The line where `value` changes sign, as segments, by marching squares on a grid of `size` samples; squares with a
+/// value that is not a number are left out.
+fn contour(size: [u32; 2], value: impl Fn(u32, u32) -> f64) -> Vec<[[f64; 2]; 2]> {
+    let mut segments = Vec::new();
+    for y in 0..size[1].saturating_sub(1) {
+        for x in 0..size[0].saturating_sub(1) {
+            let corners = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]];
+            let values = corners.map(|[x, y]| value(x, y));
+            if values.iter().any(|v| v.is_nan()) {
+                continue;
+            }
+            let mut crossings = Vec::with_capacity(4);
+            for i in 0..4 {
+                let (a, b) = (values[i], values[(i + 1) % 4]);
+                if (a < 0.0) != (b < 0.0) {
+                    let t = a / (a - b);
+                    let ([ax, ay], [bx, by]) = (corners[i].map(f64::from), corners[(i + 1) % 4].map(f64::from));
+                    crossings.push([ax + (bx - ax) * t, ay + (by - ay) * t]);
+                }
+            }
+            segments.extend(crossings.chunks_exact(2).map(|pair| [pair[0], pair[1]]));
+        }
+    }
+    segments
+}

@@ -1,0 +1,139 @@
+//! Spaces and steps as a scene writes them.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{Space, Step};
+use crate::geom::ShapeSpec;
+use crate::graph::{FieldSpec, Neighbours, Weights};
+use crate::math::{Point, Ref};
+use crate::skeleton::Width;
+
+/// A randomly weighted graph in a shape, where paths are planned.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpaceSpec {
+    /// Take everything that is not given here from the space of this name. The random weights are this space's own.
+    #[serde(default)]
+    pub like: Option<Ref<Space>>,
+    /// Where nodes are.
+    pub shape: ShapeSpec,
+    /// A shape that no path enters.
+    #[serde(default)]
+    pub forbid: Option<ShapeSpec>,
+    /// How nodes are laid out and joined.
+    pub nodes: NodesSpec,
+    /// The random part of the weights.
+    #[serde(default)]
+    pub weights: Weights,
+    /// Cost fields, by name.
+    #[serde(default)]
+    pub field: BTreeMap<String, FieldSpec>,
+    /// The name of the random stream: spaces with the same one have the same random weights. By default the space's
+    /// own name.
+    #[serde(default)]
+    pub stream: Option<String>,
+}
+
+/// How the nodes of a graph are laid out.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum NodesSpec {
+    /// A regular lattice.
+    Lattice(LatticeSpec),
+}
+
+/// A regular lattice: its nodes are the multiples of the spacing within the shape.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LatticeSpec {
+    /// Distance between neighbours along an axis, in scene units.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+    pub spacing: f64,
+    /// 4 or 8 neighbours in the plane, 6, 18 or 26 in space; longer edges cost in proportion.
+    pub neighbours: Neighbours,
+}
+
+/// One growth step: paths from generators to endpoints.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StepSpec {
+    /// Take everything that is not given here from the step of this name.
+    #[serde(default)]
+    pub like: Option<Ref<Step>>,
+    /// The space to plan in.
+    pub space: Ref<Space>,
+    /// Where paths start.
+    pub from: FromSpec,
+    /// Where paths go: sets of endpoints, by name.
+    pub to: BTreeMap<String, EndpointSpec>,
+    /// Radii along the paths.
+    pub width: Width,
+    /// Positions are averaged along limbs over about this many lattice steps to either side; 0 leaves every step of
+    /// the lattice to be seen.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 20.0))]
+    pub smooth: f64,
+    /// What to do about endpoints that no path reaches.
+    #[serde(default)]
+    pub unreached: Unreached,
+}
+
+/// The generators of a step: the nodes at cost 0.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum FromSpec {
+    /// The nodes nearest to these points.
+    At(#[schemars(length(min = 1))] Vec<Point>),
+    /// All nodes in a shape.
+    Inside(ShapeSpec),
+}
+
+/// A set of endpoints: exactly one of `count`, `at` and `sketch`. Adding to `count` keeps those already placed.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EndpointSpec {
+    /// How many to place at random.
+    #[serde(default)]
+    #[schemars(range(min = 1, max = 1_000_000))]
+    pub count: Option<u32>,
+    /// Where to place them at random; by default anywhere in the space.
+    #[serde(default)]
+    pub inside: Option<ShapeSpec>,
+    /// Least distance between those placed at random, in scene units.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub apart: f64,
+    /// Endpoints by hand.
+    #[serde(default)]
+    pub at: Option<Vec<Point>>,
+    /// Endpoints from an SVG file, its page stretched over the space's shape: the middle of each closed outline and
+    /// the end of each open stroke.
+    #[serde(default)]
+    pub sketch: Option<String>,
+    /// The class of their paths, for widths that differ by class.
+    #[serde(default = "main_class")]
+    #[schemars(length(min = 1))]
+    pub class: String,
+    /// The name of the random stream: sets with the same one draw the same places. By default the step's and the set's
+    /// own names.
+    #[serde(default)]
+    pub stream: Option<String>,
+}
+
+fn main_class() -> String {
+    "main".to_owned()
+}
+
+/// What to do about endpoints that no path reaches.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Unreached {
+    /// Refuse the scene.
+    #[default]
+    Error,
+    /// Leave them out, with a warning that counts them.
+    Drop,
+}

@@ -1,0 +1,18 @@
+//! Vectors (re-exported from `glam`), counter-based random streams, names, and the handle by which
+//! long work reports progress and is cancelled.
+//!
+//! Later stages need never handle platform differences: everything here gives the same bits everywhere.
+
+
+mod name;
+mod power;
+mod progress;
+mod random;
+pub mod tolerance;
+
+pub use glam::{DVec2, DVec3};
+
+pub use name::{Colour, Degrees, Point, Ref, unknown};
+pub use power::power;
+pub use progress::{Cancelled, Progress};
+pub use random::{Stream, mix};

@@ -1,0 +1,215 @@
+//! The view: given, or fitted to what there is to see.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::math::{DVec3, Degrees, Point};
+
+/// Room left around what is fitted, as a share of the picture.
+const MARGIN: f64 = 0.06;
+
+/// A camera as a scene writes it: given by `at` and `look_at`, or else turned to an angle and fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct CameraSpec {
+    /// Where it stands.
+    pub at: Option<Point>,
+    /// What it looks at.
+    pub look_at: Option<Point>,
+    /// Without `at`: how far it goes around to the right of the front.
+    pub turn: Degrees,
+    /// Without `at`: how far above the level it looks from.
+    pub rise: Degrees,
+    /// Horizontal angle of view; 0 for a parallel view.
+    pub angle: Degrees,
+    /// Without `at`: share of extra room around what is fitted.
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub room: f64,
+}
+
+impl Default for CameraSpec {
+    fn default() -> Self {
+        Self {
+            at: None,
+            look_at: None,
+            turn: Degrees(0.0),
+            rise: Degrees(4.0),
+            angle: Degrees(30.0),
+            room: 0.0,
+        }
+    }
+}
+
+/// A camera in world space; the top of the picture is up (z).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Where it stands.
+    pub at: DVec3,
+    /// What it looks at.
+    pub look_at: DVec3,
+    /// How the world falls into the picture.
+    pub projection: Projection,
+    /// Width of the picture over its height.
+    pub aspect: f64,
+}
+
+/// How the world falls into a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Central projection.
+    Perspective {
+        /// Horizontal angle of view, in radians.
+        angle: f64,
+    },
+    /// Parallel projection.
+    Parallel {
+        /// Width of what is seen, in scene units.
+        width: f64,
+    },
+}
+
+/// A point in the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Projected {
+    /// Fraction of the width from the left.
+    pub x: f64,
+    /// Fraction of the height from the top.
+    pub y: f64,
+    /// Width of one scene unit there, as a fraction of the picture's width.
+    pub scale: f64,
+    /// Distance along the view.
+    pub depth: f64,
+}
+
+impl Camera {
+    /// The camera that `spec` describes, fitted to `balls` (centre, radius) where it has no place of its own.
+    /// `aspect` is the picture's width over its height.
+    ///
+    /// # Errors
+    /// A sentence where `at` and `look_at` do not fit together.
+    pub fn new(
+        spec: &CameraSpec,
+        aspect: f64,
+        balls: impl Iterator<Item = (DVec3, f64)> + Clone,
+    ) -> Result<Self, String> {
+        let angle = spec.angle.radians();
+        if let Some(at) = spec.at {
+            let look_at = spec.look_at.ok_or("a camera with `at` needs `look_at` too")?;
+            let way = look_at.0 - at.0;
+            if way.x == 0.0 && way.y == 0.0 {
+                return Err("a camera must not look straight up or down, or at its own place".to_owned());
+            }
+            if angle <= 0.0 {
+                return Err("a camera with `at` needs an `angle` above 0".to_owned());
+            }
+            let projection = Projection::Perspective { angle };
+            return Ok(Self { at: at.0, look_at: look_at.0, projection, aspect });
+        }
+        if spec.look_at.is_some() {
+            return Err("a camera with `look_at` needs `at` too".to_owned());
+        }
+        let (turn, rise) = (spec.turn.radians(), spec.rise.radians());
+        let back = DVec3::new(
+            libm::sin(turn) * libm::cos(rise),
+            -libm::cos(turn) * libm::cos(rise),
+            libm::sin(rise),
+        );
+        let right = DVec3::new(libm::cos(turn), libm::sin(turn), 0.0);
+        let up = back.cross(right);
+        let grow = 1.0 + MARGIN + spec.room;
+
+        // The middle of what is seen along each axis of the view.
+        let mut low = DVec3::INFINITY;
+        let mut high = DVec3::NEG_INFINITY;
+        for (centre, radius) in balls.clone() {
+            let p = DVec3::new(centre.dot(right), centre.dot(up), centre.dot(back));
+            low = low.min(p - radius);
+            high = high.max(p + radius);
+        }
+        if !low.is_finite() {
+            (low, high) = (DVec3::splat(-1.0), DVec3::splat(1.0));
+        }
+        let middle = (low + high) * 0.5;
+        let look_at = right * middle.x + up * middle.y + back * middle.z;
+        let size = high - low;
+        if angle <= 0.0 {
+            let width = (size.x.max(size.y * aspect) * grow).max(1e-6);
+            return Ok(Self {
+                at: look_at + back * (size.length() + width),
+                look_at,
+                projection: Projection::Parallel { width },
+                aspect,
+            });
+        }
+        // A ball of radius r at (x, depth D - z) is seen whole when x + r / cos(h) <= (D - z) tan(h), for each half
+        // angle h.
+        let tan = libm::tan(angle * 0.5) / grow;
+        let distance = balls.fold(size.length() * 1e-3, |distance, (centre, radius)| {
+            let p = centre - look_at;
+            [(p.dot(right), tan), (p.dot(up), tan / aspect)]
+                .into_iter()
+                .map(|(x, tan)| p.dot(back) + (x.abs() + radius * libm::sqrt(1.0 + tan * tan)) / tan)
+                .fold(distance, f64::max)
+        });
+        Ok(Self {
+            at: look_at + back * distance,
+            look_at,
+            projection: Projection::Perspective { angle },
+            aspect,
+        })
+    }
+
+    /// Unit vectors to the right, up and forwards of the picture.
+    #[must_use]
+    pub fn frame(&self) -> [DVec3; 3] {
+        let forwards = (self.look_at - self.at).normalize();
+        let right = forwards.cross(DVec3::Z).normalize();
+        [right, right.cross(forwards), forwards]
+    }
+
+    /// Where `p` falls in the picture; `None` behind the camera.
+    #[must_use]
+    pub fn project(&self, p: DVec3) -> Option<Projected> {
+        let [right, up, forwards] = self.frame();
+        let d = p - self.at;
+        let depth = d.dot(forwards);
+        let scale = match self.projection {
+            Projection::Parallel { width } => 1.0 / width,
+            Projection::Perspective { .. } if depth <= 0.0 => return None,
+            Projection::Perspective { angle } => 0.5 / (depth * libm::tan(angle * 0.5)),
+        };
+        Some(Projected {
+            x: 0.5 + d.dot(right) * scale,
+            y: 0.5 - d.dot(up) * scale * self.aspect,
+            scale,
+            depth,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fits_what_there_is_to_see() {
+        let balls = [(DVec3::new(0.0, 0.0, 1.0), 0.5), (DVec3::new(3.0, -1.0, 8.0), 0.1), (DVec3::new(-2.0, 1.0, 4.0), 0.2)];
+        for angle in [0.0, 30.0, 80.0] {
+            for aspect in [0.5, 1.0, 2.0] {
+                let spec = CameraSpec { angle: Degrees(angle), turn: Degrees(25.0), ..CameraSpec::default() };
+                let camera = Camera::new(&spec, aspect, balls.into_iter()).unwrap();
+                let mut extreme = 0.0_f64;
+                for (centre, radius) in balls {
+                    let p = camera.project(centre).unwrap();
+                    for d in [p.x - 0.5 + radius * p.scale, 0.5 - p.x + radius * p.scale] {
+                        extreme = extreme.max(d);
+                    }
+                    for d in [p.y - 0.5, 0.5 - p.y] {
+                        extreme = extreme.max(d + radius * p.scale * aspect);
+                    }
+                }
+                assert!((0.4..=0.501).contains(&extreme), "{angle} {aspect}: {extreme}");
+            }
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Skins: from a skeleton to what is seen.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Ball, Digits, Object, to_world};
+use crate::math::{DVec3, tolerance::INVISIBLE_RADIUS};
+use crate::skeleton::{Skeleton, overlap};
+
+/// Spheres stand no further apart than this share of the smaller radius: their union then dips by 3 % of it.
+const SPHERE_GAP: f64 = 0.5;
+/// Most spheres to a segment: a twig thinner than this allows is far below a pixel.
+const MOST_SPHERES: u32 = 256;
+/// More primitives than this in an object are refused: POV-Ray takes about a kilobyte for each.
+const MOST_PRIMITIVES: usize = 20_000_000;
+
+/// How a skeleton becomes solid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Skin {
+    /// A sphere at each node, with more between them until they overlap (Xu and Mould 2008, section 4).
+    Spheres,
+    /// A round cone along each segment: the frustum tangent to the spheres at its ends, and these.
+    #[default]
+    Cones,
+}
+
+/// Why a skeleton has no skin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SkinError {
+    /// Nothing would be seen.
+    #[error("its steps have no paths: nothing is left to show")]
+    Empty,
+    /// Too much to write and render.
+    #[error("{0} primitives are more than {MOST_PRIMITIVES}: use fewer endpoints, or cones in place of spheres")]
+    TooMany(usize),
+    /// Too small or too large for renderers.
+    #[error("its size is out of the range that renderers show, 0.001 to 1e7 scene units: change the spacing")]
+    Size,
+}
+
+impl Skin {
+    /// The object that `skeletons` become, with the first root as its foot, moved by `offset` (in scene space).
+    ///
+    /// # Errors
+    /// [`SkinError`].
+    pub fn dress(
+        self,
+        name: &str,
+        skeletons: &[&Skeleton],
+        is_flat: bool,
+        offset: DVec3,
+        material: usize,
+    ) -> Result<Object, SkinError> {
+        let root = skeletons.iter().find_map(|s| s.nodes.first()).ok_or(SkinError::Empty)?.position;
+        let dense;
+        let skeletons: Vec<&Skeleton> = match self {
+            Self::Cones => skeletons.to_vec(),
+            Self::Spheres => {
+                dense = skeletons.iter().map(|s| overlap(s, SPHERE_GAP, MOST_SPHERES)).collect::<Vec<_>>();
+                dense.iter().collect()
+            }
+        };
+        let size = skeletons
+            .iter()
+            .flat_map(|s| &s.nodes)
+            .map(|n| (n.position - root).abs().max_element() + n.radius)
+            .fold(0.0, f64::max);
+        if !(1e-3..=1e7).contains(&size) {
+            return Err(SkinError::Size);
+        }
+        let digits = Digits::for_size(size);
+        let count = skeletons.iter().map(|s| s.nodes.len()).sum::<usize>() * (1 + usize::from(self == Self::Cones));
+        if count > MOST_PRIMITIVES {
+            return Err(SkinError::TooMany(count));
+        }
+
+        let mut object = Object {
+            name: name.to_owned(),
+            foot: digits.round_point(to_world(root + offset, is_flat)),
+            material,
+            balls: Vec::with_capacity(count),
+            segments: Vec::new(),
+            digits,
+        };
+        let mut branches = 0;
+        for skeleton in skeletons {
+            let first = object.balls.len() as u32;
+            for (i, node) in skeleton.nodes.iter().enumerate() {
+                let at = first + i as u32;
+                object.balls.push(Ball {
+                    centre: digits.round_point(to_world(node.position - root, is_flat)),
+                    radius: digits.round(node.radius).max(INVISIBLE_RADIUS * 2.0),
+                    cost: node.cost,
+                    branch: branches + node.branch,
+                    level: node.level,
+                });
+                if self == Self::Cones
+                    && let Some(parent) = node.parent
+                {
+                    object.segments.push([first + parent, at]);
+                }
+            }
+            branches += skeleton.nodes.iter().map(|n| n.branch + 1).max().unwrap_or(0);
+        }
+        Ok(object)
+    }
+}

@@ -1,0 +1,57 @@
+//! What a search keeps of each node: four bytes that hold its cost and the slot of its predecessor.
+
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use bytemuck::allocation::zeroed_slice_box;
+
+use crate::graph::Graph;
+
+/// One cell a node: `cost << SLOT_BITS | slot + 1`, cost modulo the bits that are left.
+///
+/// 0 is a node not yet reached, so that untouched pages of memory are never filled. A generator has slot bits 0 and a cost above 0. Costs are compared modulo 2^32: neighbours differ by
+/// no more than the largest weight, which is far below half of that.
+pub(super) struct Cells {
+    cells: Box<[AtomicU32]>,
+}
+
+/// The bits of a cell that hold its slot.
+pub(super) const fn slot_mask<G: Graph>() -> u32 {
+    (1 << G::SLOT_BITS) - 1
+}
+
+/// What stands for the cost of an unreached node: far above any other that is compared with it.
+const FAR: u32 = 1 << 30;
+
+impl Cells {
+    pub fn new(len: usize) -> Self {
+        Self {
+            cells: zeroed_slice_box(len),
+        }
+    }
+
+    #[inline(always)]
+    pub fn get(&self, cell: usize) -> u32 {
+        self.cells[cell].load(Ordering::Relaxed)
+    }
+
+    pub fn set(&self, cell: usize, value: u32) {
+        self.cells[cell].store(value, Ordering::Relaxed);
+    }
+
+    /// Stores the smaller of `new` and what is there; returns what was there, or something far above `new` where
+    /// nothing was. Only one thread may write.
+    #[inline(always)]
+    pub fn lower(&self, cell: usize, new: u32) -> u32 {
+        let slot = &self.cells[cell];
+        let old = slot.load(Ordering::Relaxed);
+        let old = if old == 0 { new.wrapping_add(FAR) } else { old };
+        let less = (new.wrapping_sub(old) as i32) < 0;
+        slot.store(if less { new } else { old }, Ordering::Relaxed);
+        old
+    }
+
+    #[inline(always)]
+    pub fn prefetch(&self, cell: usize) {
+        super::prefetch::prefetch(&self.cells, cell);
+    }
+}

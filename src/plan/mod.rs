@@ -1,0 +1,13 @@
+//! Least-cost planning: from generators to every node or to the wanted ones, and back along the paths.
+//!
+//! Later stages need never handle a loop: every node has one predecessor, chosen by cost and then by slot, so the
+//! union of paths is a forest, and paths that meet never part. The result does not depend on the number of threads.
+
+mod buckets;
+mod cells;
+mod prefetch;
+mod search;
+mod tree;
+
+pub use search::{Goal, PlanError, bytes_needed, plan};
+pub use tree::Plan;

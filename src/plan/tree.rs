@@ -1,0 +1,111 @@
+//! The result of a search: the tree of least-cost paths, walked back greedily from any node.
+
+use super::cells::{Cells, slot_mask};
+use crate::graph::{Graph, Node};
+
+/// Least-cost paths over a graph: four bytes a node.
+pub struct Plan<'g, G> {
+    graph: &'g G,
+    cells: Cells,
+    settled: usize,
+}
+
+impl<'g, G: Graph> Plan<'g, G> {
+    pub(super) fn new(graph: &'g G, cells: Cells, settled: usize) -> Self {
+        Self { graph, cells, settled }
+    }
+
+    /// The graph that was planned over.
+    #[must_use]
+    pub fn graph(&self) -> &'g G {
+        self.graph
+    }
+
+    /// How many nodes have their final cost.
+    #[must_use]
+    pub fn settled(&self) -> usize {
+        self.settled
+    }
+
+    /// Is there a path to `node`? After an early end, only wanted nodes and those cheaper have a final answer.
+    #[must_use]
+    pub fn is_reached(&self, node: Node) -> bool {
+        self.cells.get(self.graph.cell(node)) != 0
+    }
+
+    /// The next node on the way from `node` to its generator, and the weight of the edge; `None` at a generator and
+    /// where nothing was reached.
+    #[must_use]
+    pub fn predecessor(&self, node: Node) -> Option<(Node, u32)> {
+        let slot = self.cells.get(self.graph.cell(node)) & slot_mask::<G>();
+        if slot == 0 {
+            return None;
+        }
+        Some(self.graph.follow(node, slot - 1))
+    }
+
+    /// The nodes from `node` back to its generator, both included. Greedy: each step goes to the predecessor.
+    pub fn path(&self, node: Node) -> impl Iterator<Item = Node> + '_ {
+        std::iter::successors(Some(node), |&at| self.predecessor(at).map(|(to, _)| to))
+    }
+
+    /// The least cost of `node`, fixed-point ([`crate::graph::WeightRange::real`]), or `None` if it was not reached.
+    #[must_use]
+    pub fn cost(&self, node: Node) -> Option<u64> {
+        if !self.is_reached(node) {
+            return None;
+        }
+        let mut cost = 0;
+        let mut at = node;
+        while let Some((to, weight)) = self.predecessor(at) {
+            cost += u64::from(weight);
+            at = to;
+        }
+        Some(cost)
+    }
+
+    /// For each cell of `nodes`, what `start` gives for its generator, changed by `step` along every edge on the way
+    /// out; nodes that were not reached keep the default. Each edge is walked once or twice.
+    fn carry<T: Copy + Default>(
+        &self,
+        nodes: impl Iterator<Item = Node>,
+        start: impl Fn(Node) -> T,
+        step: impl Fn(T, u32) -> T,
+    ) -> Vec<T> {
+        let mut values = vec![T::default(); self.graph.cells()];
+        let mut known = vec![false; self.graph.cells()];
+        let mut way = Vec::new();
+        for node in nodes.filter(|&node| self.is_reached(node)) {
+            let mut at = node;
+            let mut value = loop {
+                if known[self.graph.cell(at)] {
+                    break values[self.graph.cell(at)];
+                }
+                let Some((to, weight)) = self.predecessor(at) else {
+                    let value = start(at);
+                    (values[self.graph.cell(at)], known[self.graph.cell(at)]) = (value, true);
+                    break value;
+                };
+                way.push((at, weight));
+                at = to;
+            };
+            for (at, weight) in way.drain(..).rev() {
+                value = step(value, weight);
+                (values[self.graph.cell(at)], known[self.graph.cell(at)]) = (value, true);
+            }
+        }
+        values
+    }
+
+    /// The distance field: the least cost of each of `nodes` by cell, `None` where nothing was reached.
+    #[must_use]
+    pub fn costs(&self, nodes: impl Iterator<Item = Node>) -> Vec<Option<u64>> {
+        self.carry(nodes, |_| Some(0), |cost, weight| cost.map(|c| c + u64::from(weight)))
+    }
+
+    /// The nearest generator of each of `nodes` by cell (2007, section 3.4), `None` where nothing was reached.
+    #[must_use]
+    pub fn labels(&self, nodes: impl Iterator<Item = Node>) -> Vec<Option<Node>> {
+        self.carry(nodes, Some, |label, _| label)
+    }
+}

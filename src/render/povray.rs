@@ -1,0 +1,178 @@
+//! POV-Ray: one run on a scene in a folder (`reference/povray.md`).
+
+use std::io::{self, Read};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
+
+use crate::math::{Cancelled, Progress};
+
+/// How often we look whether to stop, in milliseconds.
+const POLL: Duration = Duration::from_millis(50);
+/// Lines of POV-Ray's own words that an error repeats.
+const WORDS: usize = 12;
+
+/// How POV-Ray is to render.
+#[derive(Clone, Copy, Debug)]
+pub struct Povray {
+    /// Size of the picture, in pixels.
+    pub size: [u32; 2],
+    /// Smooth edges, by adaptive supersampling.
+    pub antialias: bool,
+    /// Threads; `None` leaves the choice to POV-Ray.
+    pub threads: Option<usize>,
+}
+
+/// What a run said.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Rendered {
+    /// POV-Ray's warnings.
+    pub warnings: Vec<String>,
+}
+
+/// Why there is no picture.
+#[derive(Debug, thiserror::Error)]
+pub enum PovrayError {
+    /// The program is not there.
+    #[error(
+        "povray was not found: install it (Debian: apt-get install povray povray-includes), or export the scene with `export --to pov`"
+    )]
+    Missing,
+    /// The program could not be started or watched.
+    #[error("povray could not be run: {0}")]
+    Run(#[from] io::Error),
+    /// The program failed.
+    #[error("povray failed ({status}):\n{words}")]
+    Failed {
+        /// How it ended.
+        status: String,
+        /// Its own words, with the file and line where it gives them.
+        words: String,
+    },
+    /// Stopped by its [`Progress`]; the child was ended.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// A child that does not outlive us.
+struct Watched(Child);
+
+impl Drop for Watched {
+    fn drop(&mut self) {
+        // Both fail only when it has ended already.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+impl Povray {
+    /// Renders the scene file `scene` in `folder` to the PNG file `picture` there.
+    ///
+    /// # Errors
+    /// [`PovrayError`].
+    pub fn render(&self, folder: &Path, scene: &str, picture: &str, progress: &Progress) -> Result<Rendered, PovrayError> {
+        let [width, height] = self.size;
+        let mut command = Command::new("povray");
+        command
+            .current_dir(folder)
+            .args([format!("+I{scene}"), format!("+O{picture}")])
+            .args([format!("+W{width}"), format!("+H{height}")])
+            // No display, no pause; progress; no streams but errors and warnings.
+            .args(["-D", "-P", "+V", "-GR", "-GS", "-GD", "+FN8"]);
+        if self.antialias {
+            command.args(["+A0.1", "+AM2", "+R3", "-J"]);
+        } else {
+            command.arg("-A");
+        }
+        if let Some(threads) = self.threads {
+            command.arg(format!("+WT{threads}"));
+        }
+        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
+        let mut child = Watched(command.spawn().map_err(|error| match error.kind() {
+            io::ErrorKind::NotFound => PovrayError::Missing,
+            _ => PovrayError::Run(error),
+        })?);
+
+        let lines = listen(child.0.stderr.take());
+        let mut said = Vec::new();
+        loop {
+            progress.check()?;
+            match lines.recv_timeout(POLL) {
+                Ok(line) => match share_done(&line) {
+                    Some(share) => progress.report("render", share)?,
+                    None => said.push(line),
+                },
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+        }
+        let status = loop {
+            progress.check()?;
+            match child.0.try_wait()? {
+                Some(status) => break status,
+                None => thread::sleep(POLL),
+            }
+        };
+        if !status.success() || !folder.join(picture).is_file() {
+            return Err(PovrayError::Failed {
+                status: status.to_string(),
+                words: last_words(&said),
+            });
+        }
+        let warnings = said.into_iter().filter(|line| line.contains("Warning")).collect();
+        Ok(Rendered { warnings })
+    }
+}
+
+/// The lines of a stream, split at returns as at line ends, from a thread of their own.
+fn listen(stream: Option<impl Read + Send + 'static>) -> Receiver<String> {
+    let (send, lines) = channel();
+    if let Some(stream) = stream {
+        thread::spawn(move || {
+            let mut line = Vec::new();
+            for byte in io::BufReader::new(stream).bytes().map_while(Result::ok) {
+                if byte != b'\r' && byte != b'\n' {
+                    line.push(byte);
+                    continue;
+                }
+                let text = String::from_utf8_lossy(&line).trim().to_owned();
+                line.clear();
+                if !text.is_empty() && send.send(text).is_err() {
+                    return;
+                }
+            }
+        });
+    }
+    lines
+}
+
+/// The share done that a line such as `Rendered 1024 of 19200 pixels (5%)` tells.
+fn share_done(line: &str) -> Option<f64> {
+    let mut words = line.strip_prefix("Rendered ")?.split_whitespace();
+    let done: f64 = words.next()?.parse().ok()?;
+    let all: f64 = words.nth(1)?.parse().ok()?;
+    (all > 0.0).then(|| done / all)
+}
+
+/// From the first line that tells of an error on, or else the last lines.
+fn last_words(said: &[String]) -> String {
+    let first = said
+        .iter()
+        .position(|line| line.contains("Error") || line.contains("error:"))
+        .unwrap_or(said.len().saturating_sub(WORDS));
+    let words: Vec<_> = said[first..].iter().take(WORDS).map(String::as_str).collect();
+    if words.is_empty() { "it said nothing".to_owned() } else { words.join("\n") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_progress() {
+        assert_eq!(share_done("Rendered 1024 of 4096 pixels (25%)"), Some(0.25));
+        assert_eq!(share_done("Parsing 4484K tokens"), None);
+    }
+}

@@ -1,0 +1,134 @@
+//! Claims: what a figure shows, as numbers.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::grow::{Grown, Step};
+use crate::math::Ref;
+use crate::skeleton::{Skeleton, measure};
+
+/// A claim about a step: one quantity, and what it is held against.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Claim {
+    /// The claim in words.
+    pub says: String,
+    /// What is measured.
+    pub measure: Quantity,
+    /// The step that it is measured of.
+    pub of: Ref<Step>,
+    /// It is at least this.
+    #[serde(default)]
+    pub at_least: Option<f64>,
+    /// It is at most this.
+    #[serde(default)]
+    pub at_most: Option<f64>,
+    /// It is more than the same quantity of this step.
+    #[serde(default)]
+    pub more_than: Option<Ref<Step>>,
+    /// It is more than the other by at least this factor.
+    #[serde(default = "one")]
+    #[schemars(range(min = 1.0, max = 1e6))]
+    pub times: f64,
+    /// For `shared`: the other step.
+    #[serde(default)]
+    pub with: Option<Ref<Step>>,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// What a claim measures; all but `shared` are fields of [`crate::skeleton::Measurement`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Number of paths.
+    Endpoints,
+    /// Total length of all limbs.
+    Length,
+    /// Mean length of a path over the straight distance between its ends.
+    Tortuosity,
+    /// Mean distance of the limbs from the upright line through the root.
+    Offset,
+    /// Mean height of the limbs, as a share of the greatest.
+    Height,
+    /// Mean height of the forks, as a share of the greatest height.
+    ForkHeight,
+    /// Greatest distance from the upright line through the root, over the greatest height.
+    Spread,
+    /// Length up to the first fork, as a share of the greatest height.
+    Trunk,
+    /// Share of the step's endpoints that are endpoints of the step `with` too.
+    Shared,
+}
+
+impl Quantity {
+    fn of(self, skeleton: &Skeleton, with: Option<&Skeleton>) -> f64 {
+        let m = measure(skeleton);
+        match self {
+            Self::Endpoints => m.endpoints as f64,
+            Self::Length => m.length,
+            Self::Tortuosity => m.tortuosity,
+            Self::Offset => m.offset,
+            Self::Height => m.height,
+            Self::ForkHeight => m.fork_height,
+            Self::Spread => m.spread,
+            Self::Trunk => m.trunk,
+            Self::Shared => with.map_or(0.0, |with| {
+                let ends = |s: &Skeleton| -> Vec<_> { s.paths.iter().map(|p| s.nodes[p.end as usize].position).collect() };
+                let (own, other) = (ends(skeleton), ends(with));
+                own.iter().filter(|p| other.contains(p)).count() as f64 / own.len().max(1) as f64
+            }),
+        }
+    }
+}
+
+/// What was found of a claim.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    /// The claim's name.
+    pub claim: String,
+    /// The claim in words.
+    pub says: String,
+    /// The quantity that was measured.
+    pub measured: f64,
+    /// What it was held against, in words.
+    pub against: String,
+    /// Does the claim hold?
+    pub holds: bool,
+}
+
+/// Measures every claim on the steps that were grown.
+#[must_use]
+pub fn check_claims(claims: &BTreeMap<String, Claim>, grown: &[Grown]) -> Vec<Finding> {
+    let step = |name: &Ref<Step>| grown.iter().find(|g| g.name == name.name).map(|g| &g.skeleton);
+    let findings = claims.iter().filter_map(|(name, claim)| {
+        let measured = claim.measure.of(step(&claim.of)?, claim.with.as_ref().and_then(&step));
+        let mut against = Vec::new();
+        let mut holds = true;
+        if let Some(least) = claim.at_least {
+            against.push(format!("at least {least}"));
+            holds &= measured >= least;
+        }
+        if let Some(most) = claim.at_most {
+            against.push(format!("at most {most}"));
+            holds &= measured <= most;
+        }
+        if let Some(other) = &claim.more_than {
+            let than = claim.measure.of(step(other)?, None);
+            against.push(format!("more than {} times {than:.4} of `{}`", claim.times, other.name));
+            holds &= measured > than * claim.times;
+        }
+        Some(Finding {
+            claim: name.clone(),
+            says: claim.says.clone(),
+            measured,
+            against: against.join(", "),
+            holds: holds && !against.is_empty(),
+        })
+    });
+    findings.collect()
+}

@@ -1,0 +1,119 @@
+//! A scene file as serde reads it, after validation.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::tree::Entry;
+use super::{Claim, Mistake};
+use crate::geom::ShapeSpec;
+use crate::grow::{MarkKind, SpaceSpec, Step, StepSpec};
+use crate::math::{Point, Ref};
+use crate::model::{CameraSpec, GroundSpec, LightSpec, Material, Skin, Sky};
+
+/// A scene: named growth steps in named spaces, the objects that they become, and how these are seen.
+///
+/// Angles are in degrees, lengths in scene units. In space the world is right-handed with z up; a scene whose
+/// lattices have 4 or 8 neighbours is flat, with y up.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "Lichtenberg scene")]
+pub struct Scene {
+    /// What it is called.
+    #[schemars(length(min = 1))]
+    pub title: String,
+    /// A few words about it.
+    #[serde(default)]
+    pub about: Option<String>,
+    /// The rules that fix its structure across releases.
+    #[serde(default = "first_edition")]
+    #[schemars(range(min = 1, max = 1))]
+    pub edition: u32,
+    /// The seed of all its random numbers.
+    #[serde(default = "first_seed")]
+    #[schemars(range(min = 0, max = 9_007_199_254_740_991_u64))]
+    pub seed: u64,
+    /// Size of its picture in pixels: width, height.
+    #[serde(default = "default_size")]
+    #[schemars(inner(range(min = 16, max = 16384)))]
+    pub size: [u32; 2],
+    /// Draw it as a schematic, with these marks of its construction.
+    #[serde(default)]
+    pub show: Vec<MarkKind>,
+    /// Shapes, by name.
+    #[serde(default)]
+    pub shape: BTreeMap<String, ShapeSpec>,
+    /// Graphs to plan in, by name.
+    pub space: BTreeMap<String, SpaceSpec>,
+    /// Growth steps, by name.
+    pub grow: BTreeMap<String, StepSpec>,
+    /// What is seen, by name.
+    pub object: BTreeMap<String, ObjectSpec>,
+    /// Materials, by name. `bark` and, for flat scenes, `ink` are there already.
+    #[serde(default)]
+    pub material: BTreeMap<String, Material>,
+    /// The view; by default from the front, fitted to the objects.
+    #[serde(default)]
+    pub camera: Option<CameraSpec>,
+    /// Lights, by name; by default a sun and a weak light from the other side.
+    #[serde(default)]
+    pub light: BTreeMap<String, LightSpec>,
+    /// The ground; by default none.
+    #[serde(default)]
+    pub ground: Option<GroundSpec>,
+    /// What is behind everything; by default white for flat scenes, a pale sky in space.
+    #[serde(default)]
+    pub sky: Option<Sky>,
+    /// What the scene claims of its steps, as numbers that `check` and the tests read, by name.
+    #[serde(default)]
+    pub claim: BTreeMap<String, Claim>,
+}
+
+/// What is declared and seen as one thing.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectSpec {
+    /// Take everything that is not given here from the object of this name.
+    #[serde(default)]
+    pub like: Option<Ref<Self>>,
+    /// The steps that it is made of.
+    #[schemars(length(min = 1))]
+    pub grow: Vec<Ref<Step>>,
+    /// How skeletons become solid.
+    #[serde(default)]
+    pub skin: Skin,
+    /// What it is made of.
+    #[serde(default)]
+    pub material: Option<Ref<Material>>,
+    /// How far it is moved from where it grew.
+    #[serde(default)]
+    pub at: Option<Point>,
+}
+
+fn first_edition() -> u32 {
+    1
+}
+
+fn first_seed() -> u64 {
+    1
+}
+
+fn default_size() -> [u32; 2] {
+    [640, 480]
+}
+
+/// The document of a tree that was found valid.
+pub(super) fn read(tree: &Entry, mistakes: &mut Vec<Mistake>) -> Option<Scene> {
+    serde_path_to_error::deserialize(tree.to_json())
+        .map_err(|error| {
+            let place = error.path().to_string().replace('[', "").replace(']', "");
+            let place = if place == "." { String::new() } else { place };
+            mistakes.push(Mistake {
+                span: tree.find_span(&place),
+                message: error.into_inner().to_string(),
+                place,
+            });
+        })
+        .ok()
+}

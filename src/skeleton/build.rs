@@ -1,0 +1,175 @@
+//! Paths become a forest.
+
+use std::collections::HashMap;
+
+use crate::graph::Node;
+use crate::math::DVec3;
+
+/// One node of a skeleton.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SkeletonNode {
+    /// Where it is, in scene units.
+    pub position: DVec3,
+    /// The node before it on the way from the generator; `None` at a generator.
+    pub parent: Option<u32>,
+    /// Least path cost from the generator.
+    pub cost: f64,
+    /// Radius of the limb here; 0 until a width is given.
+    pub radius: f64,
+    /// The limb that it belongs to ([`Skeleton::number_branches`]).
+    pub branch: u32,
+    /// The round of growth that made it.
+    pub level: u16,
+    /// The class of the thickest path through it, as an index of [`Skeleton::classes`].
+    pub class: u16,
+}
+
+/// The end of one path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Path {
+    /// The node at the endpoint.
+    pub end: u32,
+    /// The path's class, as an index of [`Skeleton::classes`].
+    pub class: u16,
+}
+
+/// A forest of nodes; parents precede children.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Skeleton {
+    /// All nodes.
+    pub nodes: Vec<SkeletonNode>,
+    /// The paths whose union it is, in the order of their endpoints.
+    pub paths: Vec<Path>,
+    /// Names of the classes of paths.
+    pub classes: Vec<String>,
+}
+
+impl Skeleton {
+    /// An empty skeleton.
+    #[must_use]
+    pub fn new(classes: Vec<String>) -> Self {
+        Self { classes, ..Self::default() }
+    }
+
+    /// Adds the path given from its endpoint back to a generator: each node, its position and its cost. Paths that
+    /// meet share their nodes; `known` remembers which are there.
+    pub fn add_path(
+        &mut self,
+        known: &mut HashMap<Node, u32>,
+        class: u16,
+        path: impl Iterator<Item = (Node, DVec3, f64)>,
+    ) {
+        let mut fresh = Vec::new();
+        let mut parent = None;
+        for (node, position, cost) in path {
+            if let Some(&at) = known.get(&node) {
+                parent = Some(at);
+                break;
+            }
+            fresh.push((node, position, cost));
+        }
+        for (node, position, cost) in fresh.into_iter().rev() {
+            let at = self.nodes.len() as u32;
+            known.insert(node, at);
+            self.nodes.push(SkeletonNode {
+                position,
+                parent,
+                cost,
+                radius: 0.0,
+                branch: 0,
+                level: 0,
+                class,
+            });
+            parent = Some(at);
+        }
+        self.paths.extend(parent.map(|end| Path { end, class }));
+    }
+
+    /// The nodes with their parents, roots left out.
+    pub fn segments(&self) -> impl Iterator<Item = (&SkeletonNode, &SkeletonNode)> {
+        self.nodes
+            .iter()
+            .filter_map(|node| node.parent.map(|p| (&self.nodes[p as usize], node)))
+    }
+
+    /// For each node the child that continues its limb: the thickest, then the one whose paths cost most, then the
+    /// first.
+    #[must_use]
+    pub fn main_children(&self) -> Vec<Option<u32>> {
+        let mut far: Vec<f64> = self.nodes.iter().map(|n| n.cost).collect();
+        let mut main: Vec<Option<u32>> = vec![None; self.nodes.len()];
+        for (i, node) in self.nodes.iter().enumerate().rev() {
+            if let Some(parent) = node.parent {
+                far[parent as usize] = far[parent as usize].max(far[i]);
+            }
+        }
+        for (i, node) in self.nodes.iter().enumerate() {
+            let Some(parent) = node.parent else { continue };
+            let main = &mut main[parent as usize];
+            let is_better = main.is_none_or(|old| {
+                let key = |n: u32| (self.nodes[n as usize].radius, far[n as usize]);
+                key(i as u32) > key(old)
+            });
+            if is_better {
+                *main = Some(i as u32);
+            }
+        }
+        main
+    }
+
+    /// Gives each limb a number, from 0 in the order of its first node: at a fork the main child goes on, and every
+    /// other child starts a limb of its own.
+    pub fn number_branches(&mut self) {
+        let main = self.main_children();
+        let mut next = 0;
+        for i in 0..self.nodes.len() {
+            self.nodes[i].branch = match self.nodes[i].parent {
+                Some(p) if main[p as usize] == Some(i as u32) => self.nodes[p as usize].branch,
+                _ => {
+                    next += 1;
+                    next - 1
+                }
+            };
+        }
+    }
+
+    /// How many children each node has.
+    #[must_use]
+    pub fn child_counts(&self) -> Vec<u32> {
+        let mut counts = vec![0; self.nodes.len()];
+        for parent in self.nodes.iter().filter_map(|n| n.parent) {
+            counts[parent as usize] += 1;
+        }
+        counts
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// A skeleton from lists of (x, y) that start at their endpoint; equal points are one node.
+    pub fn skeleton(paths: &[&[(i32, i32)]]) -> Skeleton {
+        let mut skeleton = Skeleton::new(vec!["main".to_owned()]);
+        let mut known = HashMap::new();
+        for path in paths {
+            let length = path.len();
+            let nodes = path.iter().enumerate().map(|(i, &(x, y))| {
+                let node = Node((y * 1000 + x) as u32);
+                (node, DVec3::new(f64::from(x), f64::from(y), 0.0), (length - 1 - i) as f64)
+            });
+            skeleton.add_path(&mut known, 0, nodes);
+        }
+        skeleton
+    }
+
+    #[test]
+    fn paths_that_meet_share_their_nodes() {
+        let mut s = skeleton(&[&[(0, 3), (0, 2), (0, 1), (0, 0)], &[(2, 2), (1, 2), (0, 1), (0, 0)]]);
+        assert_eq!(s.nodes.len(), 6);
+        assert_eq!(s.paths.iter().map(|p| p.end).collect::<Vec<_>>(), [3, 5]);
+        assert!(s.nodes.iter().enumerate().all(|(i, n)| n.parent.is_none_or(|p| (p as usize) < i)));
+        s.number_branches();
+        assert_eq!(s.nodes.iter().map(|n| n.branch).collect::<Vec<_>>(), [0, 0, 0, 0, 1, 1]);
+    }
+}

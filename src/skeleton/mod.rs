@@ -1,0 +1,16 @@
+//! Skeletons: the union of paths as a forest of nodes with costs and radii.
+//!
+//! Later stages need never handle a loop or a dangling parent: parents precede their children, positions are finite,
+//! radii are finite and above 0 once a width has been given.
+
+mod build;
+mod measure;
+mod smooth;
+mod spline;
+mod width;
+
+pub use build::{Path, Skeleton, SkeletonNode};
+pub use measure::{Measurement, measure};
+pub use smooth::smooth;
+pub use spline::{bend, overlap};
+pub use width::{PerClass, Taper, Width};

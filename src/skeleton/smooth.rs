@@ -1,0 +1,43 @@
+//! Smoothing: the steps of the lattice are averaged away along the limbs.
+
+use super::Skeleton;
+
+/// Moves each node towards the mean of its neighbours along its limb, so that positions (and radii at forks' first
+/// nodes) are averaged over about `steps` lattice steps (standard deviation) to either side.
+///
+/// Roots and tips stay where they are. A fork has one position, which all its limbs share: branching points stay
+/// together. The kernel is `[1 2 1] / 4`, whose variance is half a step.
+pub fn smooth(skeleton: &mut Skeleton, steps: f64) {
+    let passes = libm::round(2.0 * steps * steps) as u32;
+    let main = skeleton.main_children();
+    let mut next: Vec<_> = skeleton.nodes.iter().map(|n| n.position).collect();
+    for _ in 0..passes {
+        for (i, node) in skeleton.nodes.iter().enumerate() {
+            let (Some(before), Some(after)) = (node.parent, main[i]) else { continue };
+            let [before, after] = [before, after].map(|n| skeleton.nodes[n as usize].position);
+            next[i] = (before + node.position * 2.0 + after) * 0.25;
+        }
+        for (node, &position) in skeleton.nodes.iter_mut().zip(&next) {
+            node.position = position;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::build::tests::skeleton;
+    use super::super::measure;
+    use super::*;
+
+    #[test]
+    fn a_staircase_becomes_a_line() {
+        let stairs: Vec<_> = (0..41).rev().map(|i| ((i + 1) / 2, i / 2)).collect();
+        let mut s = skeleton(&[&stairs]);
+        let before = measure(&s).tortuosity;
+        let ends = (s.nodes[0].position, s.nodes[40].position);
+        smooth(&mut s, 2.0);
+        let after = measure(&s).tortuosity;
+        assert!(before > 1.4 && after < 1.01, "{before} {after}");
+        assert_eq!((s.nodes[0].position, s.nodes[40].position), ends);
+    }
+}
