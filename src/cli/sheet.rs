@@ -25,9 +25,8 @@ pub fn write_sheet(path: &Path, tiles: &[Tile]) -> Result<(), Failure> {
     let [width, height] = cell.map(|side| ((f64::from(side) * scale).round() as u32).clamp(1, SIDE));
     let count = tiles.len() as u32;
     let columns = (1..=count)
-        .find(|columns| columns * (width + GAP) >= count.div_ceil(*columns) * (height + LABEL + GAP))
-        .unwrap_or(1)
-        .max(count.min(4));
+        .min_by_key(|&columns| (columns * (width + GAP)).max(count.div_ceil(columns) * (height + LABEL + GAP)))
+        .unwrap_or(1);
     let rows = count.div_ceil(columns);
     let mut sheet = Rgba::white(columns * (width + GAP) + GAP, rows * (height + LABEL + GAP) + GAP);
     for (i, tile) in (0..).zip(tiles) {

@@ -198,7 +198,9 @@ impl ShapeSpec {
                 if !min.0.cmple(max.0).all() {
                     return Err(format!("a box needs min below max, not {} and {}", min.0, max.0));
                 }
-                Solid::Box { min: *min, max: *max }
+                // In the plane the third coordinate is not given; a box without depth would have no inside.
+                let depth = if min.0.z == 0.0 && max.0.z == 0.0 { DVec3::Z } else { DVec3::ZERO };
+                Solid::Box { min: Point(min.0 - depth), max: Point(max.0 + depth) }
             }
             Solid::Ellipsoid { centre, radii } => {
                 // In the plane the third half-axis is not given, and does not matter.

@@ -34,7 +34,7 @@ pub struct Material {
 }
 
 fn ambient() -> f64 {
-    0.1
+    0.2
 }
 
 fn diffuse() -> f64 {

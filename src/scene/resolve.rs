@@ -374,7 +374,7 @@ impl Resolver<'_> {
         if is_flat {
             materials.entry("ink".to_owned()).or_insert(Material::ink(Colour([0.0; 3])));
         } else {
-            materials.entry("bark".to_owned()).or_insert(Material::matt(Colour::from_srgb([122, 100, 82])));
+            materials.entry("bark".to_owned()).or_insert(Material::matt(Colour::from_srgb([150, 130, 110])));
         }
         materials.into_iter().collect()
     }
@@ -410,8 +410,8 @@ impl Resolver<'_> {
                 shadow,
             };
             return vec![
-                sun([-0.6, -0.8, 0.9], [1.0, 0.94, 0.84], 4.0, true),
-                sun([0.9, -0.5, 0.5], [0.22, 0.26, 0.32], 0.0, false),
+                sun([-0.5, -0.8, 0.8], [1.0, 0.94, 0.84], 3.0, true),
+                sun([0.9, -0.4, 0.4], [0.3, 0.34, 0.4], 0.0, false),
             ];
         }
         let mut lights = Vec::new();
