@@ -198,9 +198,7 @@ impl ShapeSpec {
                 if !min.0.cmple(max.0).all() {
                     return Err(format!("a box needs min below max, not {} and {}", min.0, max.0));
                 }
-                // In the plane the third coordinate is not given; a box without depth would have no inside.
-                let depth = if min.0.z == 0.0 && max.0.z == 0.0 { DVec3::Z } else { DVec3::ZERO };
-                Solid::Box { min: Point(min.0 - depth), max: Point(max.0 + depth) }
+                Solid::Box { min: *min, max: *max }
             }
             Solid::Ellipsoid { centre, radii } => {
                 // In the plane the third half-axis is not given, and does not matter.
@@ -234,8 +232,11 @@ impl Shape {
     pub fn distance(&self, p: DVec3) -> f64 {
         match &*self.0 {
             Solid::Box { min, max } => {
-                let q = (p - (min.0 + max.0) * 0.5).abs() - (max.0 - min.0) * 0.5;
-                q.max(DVec3::ZERO).length() + q.max_element().min(0.0)
+                let half = (max.0 - min.0) * 0.5;
+                let q = (p - (min.0 + max.0) * 0.5).abs() - half;
+                // A flat box has an inside in its own plane.
+                let inner = if half.z == 0.0 && q.z <= 0.0 { q.x.max(q.y) } else { q.max_element() };
+                q.max(DVec3::ZERO).length() + inner.min(0.0)
             }
             Solid::Sphere { centre, radius } => (p - centre.0).length() - radius,
             Solid::Ellipsoid { centre, radii } => {

@@ -15,6 +15,12 @@ const AXIS_KEYS: [u64; 3] = [
     0x3c6e_f372_fe94_f82b,
 ];
 
+/// In space, fronts of lattices with this many nodes are worth sharing among threads (benches/README.md).
+const WIDE: usize = 3_000_000;
+
+/// Layers of a slab ([`Graph::slab`]).
+const SLAB: u32 = 16;
+
 /// The part of the infinite lattice (all multiples of the spacing) that is used.
 ///
 /// Nodes keep their identity, and edges their weights, when the window moves or grows.
@@ -225,6 +231,14 @@ impl<const N: usize> Lattice<N> {
         let classes = 1 + Self::CLASS[N - 1];
         lattice.range = lattice.bounds(classes, low, high);
         Ok(lattice)
+    }
+
+    /// A lattice without cost fields and forbidden nodes.
+    ///
+    /// # Errors
+    /// As [`Lattice::new`].
+    pub fn plain(window: Window, stream: &Stream, weights: Weights) -> Result<Self, LatticeError> {
+        Self::new(window, stream, weights, None::<([bool; 3], fn(DVec3) -> FieldValue)>, None)
     }
 
     /// Bounds that hold for every edge, integer rounding included.
@@ -468,6 +482,21 @@ impl<const N: usize> Graph for Lattice<N> {
         let slot = slot as usize;
         let weight = self.weight(self.node_key(at), self.field_at(at), slot);
         (Node(node.0.wrapping_add(self.node_step[slot])), weight)
+    }
+
+    fn is_wide(&self) -> bool {
+        !Self::PLANE && self.cells() >= WIDE
+    }
+
+    #[inline(always)]
+    fn slab(&self, node: Node) -> u32 {
+        self.unpack(node)[2] / SLAB
+    }
+
+    #[inline(always)]
+    fn is_inner(&self, node: Node) -> bool {
+        // Edges go one layer up or down: those of another slab reach the first and the last layer of this one.
+        (2..SLAB - 2).contains(&(self.unpack(node)[2] % SLAB))
     }
 
     fn weight_range(&self) -> WeightRange {

@@ -57,6 +57,15 @@ pub trait Graph: Sync {
     /// The node behind the edge in `slot` of `node`, and that edge's weight. `slot` comes from [`Edge::back`].
     fn follow(&self, node: Node, slot: u32) -> (Node, u32);
 
+    /// Does a search have many nodes of nearly the same cost at a time, so that threads may share them?
+    fn is_wide(&self) -> bool;
+
+    /// The slab of the graph that holds `node`: nodes and cells of one are near each other, and edges seldom leave it.
+    fn slab(&self, node: Node) -> u32;
+
+    /// Is every neighbour of `node` one that no edge from another slab reaches?
+    fn is_inner(&self, node: Node) -> bool;
+
     /// Bounds of the weights and their fixed-point scale.
     fn weight_range(&self) -> WeightRange;
 }

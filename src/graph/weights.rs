@@ -16,6 +16,7 @@ const WEIGHT_BITS: u32 = 24;
 
 /// The distribution of an edge's random part, `R^alpha` with R uniform in (1, max).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
 pub struct Weights {
     /// Upper end of the range of R. Xu and Mould 2007's `1 + r U` is `max = 1 + r`.
     #[schemars(range(min = 1.0, max = 1e6))]
@@ -154,7 +155,7 @@ mod tests {
         };
         assert_eq!(
             [sum(10.0, 0.3), sum(10.0, 1.0), sum(10.0, 3.0), sum(11.0, 1.0)],
-            [0, 0, 0, 0]
+            [5_251_410_454_428_352_591, 1_940_053_902_947_470_439, 7_240_820_820_853_094_106, 3_628_366_266_119_417_321]
         );
     }
 

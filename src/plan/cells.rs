@@ -50,6 +50,23 @@ impl Cells {
         old
     }
 
+    /// [`Cells::lower`] while other threads do the same.
+    #[inline(always)]
+    pub fn lower_shared(&self, cell: usize, new: u32) -> u32 {
+        let slot = &self.cells[cell];
+        let mut stored = slot.load(Ordering::Relaxed);
+        loop {
+            let old = if stored == 0 { new.wrapping_add(FAR) } else { stored };
+            if (new.wrapping_sub(old) as i32) >= 0 {
+                return old;
+            }
+            match slot.compare_exchange_weak(stored, new, Ordering::Relaxed, Ordering::Relaxed) {
+                Ok(_) => return old,
+                Err(other) => stored = other,
+            }
+        }
+    }
+
     #[inline(always)]
     pub fn prefetch(&self, cell: usize) {
         super::prefetch::prefetch(&self.cells, cell);

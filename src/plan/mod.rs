@@ -5,8 +5,12 @@
 
 mod buckets;
 mod cells;
+mod front;
 mod prefetch;
 mod search;
+#[cfg(test)]
+mod search_tests;
+mod shared;
 mod tree;
 
 pub use search::{Goal, PlanError, bytes_needed, plan};

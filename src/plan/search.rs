@@ -1,16 +1,15 @@
 //! The search: least costs from generators, by buckets that are final when they are popped.
 
-use super::buckets::{Buckets, CHUNK};
-use super::cells::{Cells, slot_mask};
+use super::buckets::Buckets;
+use super::cells::Cells;
+use super::front::{MOST_BUCKETS, Wanted, Width, advance};
+use super::shared;
 use super::tree::Plan;
-use crate::graph::{Graph, Node, WeightRange};
+use crate::graph::{Graph, Node};
 use crate::math::{Cancelled, Progress};
 
-/// More buckets than this would cost more to walk than the nodes in them.
-const MOST_BUCKETS: u32 = 1 << 20;
-
-/// The list of wanted nodes is swept each time costs have advanced by this much, in the units of a cell.
-const SWEEP: u32 = (1 << 29) - 1;
+/// More threads than this wait for each other more than they work.
+const MOST_THREADS: usize = 8;
 
 /// How far a search goes.
 #[derive(Clone, Copy, Debug)]
@@ -37,37 +36,6 @@ pub enum PlanError {
     Cancelled(#[from] Cancelled),
 }
 
-/// How costs fall into buckets.
-#[derive(Clone, Copy)]
-struct Width {
-    /// A cell shifted right by this is the number of its bucket, before it is wrapped.
-    shift: u32,
-    /// Number of buckets less one: a mask.
-    wrap: u32,
-}
-
-impl Width {
-    fn new(range: WeightRange, slot_bits: u32) -> Result<Self, PlanError> {
-        let log = range.least.ilog2();
-        // One bucket for the current one and one for rounding.
-        let count = ((range.most >> log) + 2).next_power_of_two();
-        if count > MOST_BUCKETS {
-            return Err(PlanError::TooWide {
-                ratio: range.most / range.least,
-            });
-        }
-        Ok(Self {
-            shift: log + slot_bits,
-            wrap: count - 1,
-        })
-    }
-
-    #[inline(always)]
-    fn bucket(self, cell: u32) -> u32 {
-        cell >> self.shift & self.wrap
-    }
-}
-
 /// Bytes that a search over `cells` cells may take at its peak: what is compared with the memory limit.
 #[must_use]
 pub fn bytes_needed(cells: u64) -> u64 {
@@ -78,6 +46,22 @@ pub fn bytes_needed(cells: u64) -> u64 {
 
 /// Least costs from `generators` over `graph`.
 ///
+/// Wide fronts are shared among the threads of the current rayon pool ([`Graph::is_wide`]); the result is the same.
+///
+/// ```
+/// use lichtenberg::graph::{Lattice, Weights, Window};
+/// use lichtenberg::math::{DVec3, Progress, Stream};
+/// use lichtenberg::plan::{Goal, plan};
+///
+/// let window = Window::new(DVec3::ZERO, DVec3::splat(20.0), 1.0, 3)?;
+/// let lattice: Lattice<6> = Lattice::plain(window, &Stream::new(7, "air"), Weights::default())?;
+/// let (root, end) = (lattice.node([0, 0, 0]), lattice.node([20, 20, 20]));
+/// let plan = plan(&lattice, &[root], Goal::Nodes(&[end]), &Progress::default())?;
+/// let path: Vec<_> = plan.path(end).collect();
+/// assert_eq!((path[0], path[path.len() - 1]), (end, root));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`PlanError::TooWide`] when weights span too wide a range, [`PlanError::Cancelled`] when `progress` says stop.
 pub fn plan<'g, G: Graph>(
@@ -86,84 +70,73 @@ pub fn plan<'g, G: Graph>(
     goal: Goal<'_>,
     progress: &Progress,
 ) -> Result<Plan<'g, G>, PlanError> {
-    let range = graph.weight_range();
-    let width = Width::new(range, G::SLOT_BITS)?;
+    let threads = if graph.is_wide() { rayon::current_num_threads().min(MOST_THREADS) } else { 1 };
+    plan_on(graph, generators, goal, threads, progress)
+}
+
+/// [`plan`] on so many threads.
+pub(super) fn plan_on<'g, G: Graph>(
+    graph: &'g G,
+    generators: &[Node],
+    goal: Goal<'_>,
+    threads: usize,
+    progress: &Progress,
+) -> Result<Plan<'g, G>, PlanError> {
+    let width = Width::new(graph.weight_range(), G::SLOT_BITS)?;
     let cells = Cells::new(graph.cells());
-    let mut buckets = Buckets::new(width.wrap as usize + 1);
+    let mut buckets = Buckets::new(width.count());
     // Cost 1, since a cell of 0 means unreached.
     let start = 1 << G::SLOT_BITS;
     for &generator in generators {
         let cell = graph.cell(generator);
         if cells.get(cell) == 0 {
             cells.set(cell, start);
-            buckets.push_if(true, width.bucket(start) as usize, generator);
+            buckets.push_if(true, width.bucket(start), generator);
         }
     }
-    let mut wanted = match goal {
+    let wanted = match goal {
         Goal::Everything => None,
-        Goal::Nodes(nodes) => Some(nodes.to_vec()),
+        Goal::Nodes(nodes) => Some(nodes),
     };
+    let settled = if threads > 1 {
+        shared::run(graph, &cells, width, start, buckets, wanted, threads, progress)?
+    } else {
+        run_alone(graph, &cells, width, start, buckets, Wanted::new(wanted), progress)?
+    };
+    Ok(Plan::new(graph, cells, settled))
+}
 
-    let mut live = [(Node(0), 0_usize, 0_u32); CHUNK];
-    let mut settled = 0_usize;
-    // Where the current bucket starts, in the units of a cell.
-    let mut base = start >> width.shift << width.shift;
-    let mut turn = 0_u32;
-    let within = (1 << width.shift) - 1;
+/// The search on one thread; returns how many nodes were settled.
+fn run_alone<G: Graph>(
+    graph: &G,
+    cells: &Cells,
+    width: Width,
+    start: u32,
+    mut buckets: Buckets,
+    mut wanted: Wanted,
+    progress: &Progress,
+) -> Result<usize, Cancelled> {
+    let mut settled = 0;
+    let mut base = width.base(start);
     // Nothing waits once a whole round of buckets was empty.
     let mut idle = 0;
-    while idle <= width.wrap {
-        let current = width.bucket(base);
-        let mut taken = buckets.take(current as usize);
+    for turn in 0_u32.. {
+        let mut taken = buckets.take(width.bucket(base));
         idle += 1;
         while let Some((places, len)) = buckets.next_chunk(&mut taken) {
             idle = 0;
             for &node in buckets.upcoming(&taken) {
                 cells.prefetch(graph.cell(Node(node)));
             }
-            // First the entries that still belong to this bucket: the others were settled earlier.
-            let mut lives = 0;
-            for &node in &places[1..len] {
-                let node = Node(node);
-                let cell = graph.cell(node);
-                let value = cells.get(cell);
-                live[lives] = (node, cell, value);
-                lives += usize::from(width.bucket(value) == current);
-            }
-            for &(_, cell, _) in &live[..lives] {
-                graph.ahead(cell, |cell| cells.prefetch(cell));
-            }
-            settled += lives;
-            for &(node, _, value) in &live[..lives] {
-                let cost = value & !slot_mask::<G>();
-                graph.edges(node, |edge| {
-                    let new = cost.wrapping_add(edge.weight << G::SLOT_BITS) | (edge.back + 1);
-                    let old = cells.lower(edge.cell, new);
-                    // A node is pushed when it comes down from a higher bucket.
-                    let above = old.wrapping_sub(new & !within) as i32 > within as i32;
-                    buckets.push_if(above, width.bucket(new) as usize, edge.node);
-                });
-            }
+            settled += advance::<G, false>(graph, cells, width, base, &places[1..len], &mut buckets);
         }
-        base = base.wrapping_add(1 << width.shift);
-        if let Some(wanted) = &mut wanted {
-            let is_settled = |node: &Node| {
-                let cell = cells.get(graph.cell(*node));
-                cell != 0 && (cell.wrapping_sub(base) as i32) < 0
-            };
-            while wanted.pop_if(|node| is_settled(node)).is_some() {}
-            // Costs are compared modulo 2^32, so nothing may stay on the list for long once it is settled.
-            if base & SWEEP < 1 << width.shift {
-                wanted.retain(|node| !is_settled(node));
-            }
-            if wanted.is_empty() {
-                break;
-            }
+        base = width.next(base);
+        if idle >= width.count() || wanted.is_done(graph, cells, width, base) {
+            break;
         }
-        turn = turn.wrapping_add(1);
         if turn.is_multiple_of(1024) {
             progress.report("plan", settled as f64 / graph.cells() as f64)?;
         }
     }
-    Ok(Plan::new(graph, cells, settled))
+    Ok(settled)
 }

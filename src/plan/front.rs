@@ -1,0 +1,129 @@
+//! The advancing front: what every thread of a search does with the nodes of a bucket.
+
+use super::buckets::{Buckets, CHUNK};
+use super::cells::{Cells, slot_mask};
+use super::search::PlanError;
+use crate::graph::{Graph, Node, WeightRange};
+
+/// More buckets than this would cost more to walk than the nodes in them.
+pub(super) const MOST_BUCKETS: u32 = 1 << 20;
+/// The list of wanted nodes is swept each time costs have advanced by this much, in the units of a cell.
+const SWEEP: u32 = (1 << 29) - 1;
+
+/// How costs fall into buckets.
+#[derive(Clone, Copy)]
+pub(super) struct Width {
+    /// A cell shifted right by this is the number of its bucket, before it is wrapped.
+    shift: u32,
+    /// Number of buckets less one: a mask.
+    wrap: u32,
+}
+
+impl Width {
+    pub fn new(range: WeightRange, slot_bits: u32) -> Result<Self, PlanError> {
+        let log = range.least.ilog2();
+        // One bucket for the current one and one for rounding.
+        let count = ((range.most >> log) + 2).next_power_of_two();
+        if count > MOST_BUCKETS {
+            return Err(PlanError::TooWide {
+                ratio: range.most / range.least,
+            });
+        }
+        Ok(Self {
+            shift: log + slot_bits,
+            wrap: count - 1,
+        })
+    }
+
+    /// Number of buckets.
+    pub fn count(self) -> usize {
+        self.wrap as usize + 1
+    }
+
+    /// The bucket of a cell.
+    #[inline(always)]
+    pub fn bucket(self, cell: u32) -> usize {
+        (cell >> self.shift & self.wrap) as usize
+    }
+
+    /// Where the bucket of `cell` starts, in the units of a cell.
+    pub fn base(self, cell: u32) -> u32 {
+        cell >> self.shift << self.shift
+    }
+
+    /// Where the bucket after the one at `base` starts.
+    pub fn next(self, base: u32) -> u32 {
+        base.wrapping_add(1 << self.shift)
+    }
+}
+
+/// The nodes that a search still waits for.
+pub(super) struct Wanted(Option<Vec<Node>>);
+
+impl Wanted {
+    pub fn new(nodes: Option<&[Node]>) -> Self {
+        Self(nodes.map(<[_]>::to_vec))
+    }
+
+    /// Are all settled, now that everything below `base` is?
+    pub fn is_done<G: Graph>(&mut self, graph: &G, cells: &Cells, width: Width, base: u32) -> bool {
+        let Some(wanted) = &mut self.0 else { return false };
+        let is_settled = |node: &Node| {
+            let cell = cells.get(graph.cell(*node));
+            cell != 0 && (cell.wrapping_sub(base) as i32) < 0
+        };
+        while wanted.pop_if(|node| is_settled(node)).is_some() {}
+        // Costs are compared modulo 2^32, so nothing may stay on the list for long once it is settled.
+        if base & SWEEP < 1 << width.shift {
+            wanted.retain(|node| !is_settled(node));
+        }
+        wanted.is_empty()
+    }
+}
+
+/// Settles the nodes of a chunk that still belong to the bucket at `base` and relaxes their edges, in two passes
+/// without unforeseeable branches; returns how many were settled. `SHARED` allows other threads to do the same.
+#[inline(always)]
+pub(super) fn advance<G: Graph, const SHARED: bool>(
+    graph: &G,
+    cells: &Cells,
+    width: Width,
+    base: u32,
+    nodes: &[u32],
+    buckets: &mut Buckets,
+) -> usize {
+    let current = width.bucket(base);
+    let within = (1 << width.shift) - 1;
+    let mut live = [(Node(0), 0_usize, 0_u32); CHUNK];
+    let mut lives = 0;
+    for &node in nodes {
+        let node = Node(node);
+        let cell = graph.cell(node);
+        let value = cells.get(cell);
+        live[lives] = (node, cell, value);
+        // The others were settled earlier.
+        lives += usize::from(width.bucket(value) == current);
+    }
+    for &(_, cell, _) in &live[..lives] {
+        graph.ahead(cell, |cell| cells.prefetch(cell));
+    }
+    let mut relax = |node: Node, value: u32, is_shared: bool| {
+        let cost = value & !slot_mask::<G>();
+        graph.edges(node, |edge| {
+            let new = cost.wrapping_add(edge.weight << G::SLOT_BITS) | (edge.back + 1);
+            let old = if is_shared { cells.lower_shared(edge.cell, new) } else { cells.lower(edge.cell, new) };
+            // A node is pushed when it comes down from a higher bucket.
+            let above = old.wrapping_sub(new & !within) as i32 > within as i32;
+            buckets.push_if(above, width.bucket(new), edge.node);
+        });
+    };
+    for &(node, _, value) in &live[..lives] {
+        // Cells that only this thread writes need no care.
+        if SHARED && !graph.is_inner(node) {
+            relax(node, value, true);
+        } else {
+            relax(node, value, false);
+        }
+    }
+    lives
+}

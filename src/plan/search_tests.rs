@@ -1,0 +1,176 @@
+//! The search against a textbook one, and the properties that later stages rely on.
+
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, HashMap};
+
+use proptest::prelude::*;
+
+use super::search::plan_on;
+use super::*;
+use crate::graph::{FieldValue, Graph, Lattice, Mask, Node, Weights, Window};
+use crate::math::{DVec3, Progress, Stream};
+
+type Field = ([bool; 3], fn(DVec3) -> FieldValue);
+
+fn lattice<const N: usize>(size: [u32; 3], seed: u64, alpha: f64, field: bool, holes: bool) -> Lattice<N> {
+    let window = Window { spacing: 1.0, origin: [-3, 5, -7], size: if N == 4 || N == 8 { [size[0], size[1], 1] } else { size } };
+    let field: Option<Field> = field.then_some(([true, false, true], |p| FieldValue {
+        sum: p.x.abs() * 0.7,
+        factor: 0.5 + p.z.abs() * 0.1,
+    }));
+    let mask = holes.then(|| {
+        let words = (0..window.nodes().div_ceil(64)).map(|w| crate::math::mix(seed ^ w) & crate::math::mix(seed ^ !w) & !1);
+        Mask::from_words(words.collect(), window.nodes() as usize)
+    });
+    Lattice::new(window, &Stream::new(seed, "test"), Weights { max: 10.0, alpha }, field, mask).unwrap()
+}
+
+/// Dijkstra's algorithm as the books have it (1959), with a heap; shares nothing with the search but the graph.
+fn textbook<G: Graph>(graph: &G, generators: &[Node]) -> HashMap<Node, u64> {
+    let mut heap: BinaryHeap<_> = generators.iter().map(|&g| Reverse((0_u64, g))).collect();
+    let mut costs = HashMap::new();
+    while let Some(Reverse((cost, node))) = heap.pop() {
+        if costs.contains_key(&node) {
+            continue;
+        }
+        costs.insert(node, cost);
+        graph.edges(node, |edge| {
+            if !costs.contains_key(&edge.node) {
+                heap.push(Reverse((cost + u64::from(edge.weight), edge.node)));
+            }
+        });
+    }
+    costs
+}
+
+fn check<const N: usize>(size: [u32; 3], seed: u64, alpha: f64, field: bool, holes: bool) {
+    let lattice = lattice::<N>(size, seed, alpha, field, holes);
+    let nodes: Vec<Node> = lattice.nodes().collect();
+    let generators = [nodes[0], nodes[nodes.len() / 2]];
+    let all = plan(&lattice, &generators, Goal::Everything, &Progress::default()).unwrap();
+    let expected = textbook(&lattice, &generators);
+    let costs = all.costs(nodes.iter().copied());
+    let labels = all.labels(nodes.iter().copied());
+    for &node in &nodes {
+        assert_eq!(all.cost(node), expected.get(&node).copied());
+        assert_eq!(costs[lattice.cell(node)], expected.get(&node).copied());
+        let end = all.is_reached(node).then(|| all.path(node).last()).flatten();
+        assert_eq!(labels[lattice.cell(node)], end);
+        assert!(end.is_none_or(|end| generators.contains(&end)));
+    }
+    assert_eq!(all.settled(), expected.len());
+
+    // Threads that share the front change nothing: the same cells.
+    let shared = plan_on(&lattice, &generators, Goal::Everything, 2, &Progress::default()).unwrap();
+    assert_eq!(shared.settled(), all.settled());
+    for &node in &nodes {
+        assert_eq!(shared.predecessor(node), all.predecessor(node));
+    }
+
+    // An early end changes no path.
+    let wanted = [nodes[nodes.len() / 3], nodes[nodes.len() - 1]];
+    let early = plan(&lattice, &generators, Goal::Nodes(&wanted), &Progress::default()).unwrap();
+    for node in wanted {
+        assert!(early.path(node).eq(all.path(node)));
+    }
+    assert!(early.settled() <= all.settled());
+
+    // Both ends of an edge see the same weight, and going back along it leads home.
+    for &node in nodes.iter().take(40) {
+        lattice.edges(node, |edge| {
+            assert_eq!(lattice.follow(edge.node, edge.back), (node, edge.weight));
+            let range = lattice.weight_range();
+            assert!((range.least..=range.most).contains(&edge.weight));
+        });
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn costs_are_least(
+        x in 1..14_u32, y in 1..14_u32, z in 1..14_u32, seed: u64, alpha in 0.0..4.0, field: bool, holes: bool
+    ) {
+        let size = [x, y, z];
+        check::<4>(size, seed, alpha, field, holes);
+        check::<8>(size, seed, alpha, field, holes);
+        check::<6>(size, seed, alpha, field, holes);
+        check::<18>(size, seed, alpha, field, holes);
+        check::<26>(size, seed, alpha, field, holes);
+    }
+}
+
+/// Costs past what a cell holds wrap around: 2^27 for 26 neighbours, 32768 units with 12 fractional bits.
+#[test]
+fn costs_may_exceed_a_cell() {
+    let window = Window { spacing: 1.0, origin: [0; 3], size: [3000, 2, 2] };
+    let dear: Option<Field> = Some(([true, false, false], |_| FieldValue { sum: 60.0, factor: 1.0 }));
+    let lattice: Lattice<26> = Lattice::new(window, &Stream::new(1, "long"), Weights { max: 10.0, alpha: 1.0 }, dear, None).unwrap();
+    let (root, end) = (lattice.node([0, 0, 0]), lattice.node([2999, 1, 1]));
+    let expected = textbook(&lattice, &[root]);
+    assert!(expected[&end] > 1 << 29, "the test wants a wrap: {}", expected[&end]);
+    for goal in [Goal::Everything, Goal::Nodes(&[end, lattice.node([1, 1, 0])])] {
+        let plan = plan(&lattice, &[root], goal, &Progress::default()).unwrap();
+        assert_eq!(plan.cost(end), Some(expected[&end]));
+    }
+}
+
+/// Windows onto one infinite lattice agree where they overlap.
+#[test]
+fn a_resize_keeps_weights() {
+    let weights = Weights { max: 10.0, alpha: 2.0 };
+    let make = |origin, size| -> Lattice<18> {
+        let window = Window { spacing: 0.5, origin, size };
+        Lattice::new(window, &Stream::new(7, "resize"), weights, None::<Field>, None).unwrap()
+    };
+    let (small, large) = (make([0; 3], [4; 3]), make([-5, -9, -2], [40, 30, 20]));
+    for node in small.nodes() {
+        let twin = large.nearest(small.position(node)).unwrap();
+        let mut edges = Vec::new();
+        small.edges(node, |edge| edges.push((small.position(edge.node).to_array().map(f64::to_bits), edge.weight)));
+        let mut found = 0;
+        large.edges(twin, |edge| {
+            let key = (large.position(edge.node).to_array().map(f64::to_bits), edge.weight);
+            found += usize::from(edges.contains(&key));
+        });
+        assert_eq!(found, edges.len());
+    }
+}
+
+/// Weights of neighbouring edges are independent: chi-squared over pairs of quartiles.
+#[test]
+fn weights_are_independent() {
+    let window = Window { spacing: 1.0, origin: [-100, -100, 0], size: [256, 256, 1] };
+    let lattice: Lattice<4> =
+        Lattice::new(window, &Stream::new(3, "chi"), Weights { max: 5.0, alpha: 1.0 }, None::<Field>, None).unwrap();
+    let quartile = |weight: u32| ((weight - 4096) / 4096).min(3) as usize;
+    for step in [[1, 0], [0, 1], [1, 1], [2, 1]] {
+        let mut bins = [[0_u32; 4]; 4];
+        let mut count = 0;
+        for y in 1..250 {
+            for x in 1..250 {
+                let weights = [[x, y, 0], [x + step[0], y + step[1], 0]].map(|at| {
+                    // The slot of the positive step along x.
+                    lattice.follow(lattice.node(at), 0).1
+                });
+                bins[quartile(weights[0])][quartile(weights[1])] += 1;
+                count += 1;
+            }
+        }
+        let expected = f64::from(count) / 16.0;
+        let chi2: f64 = bins.iter().flatten().map(|&b| (f64::from(b) - expected) * (f64::from(b) - expected) / expected).sum();
+        assert!(chi2 < 45.0, "{step:?}: chi-squared {chi2} over 15 degrees of freedom");
+    }
+}
+
+#[test]
+fn too_wide_a_range_is_refused() {
+    let window = Window { spacing: 1.0, origin: [0; 3], size: [9, 9, 1] };
+    let lattice = |alpha| -> Result<Lattice<4>, _> {
+        Lattice::new(window, &Stream::new(1, "wide"), Weights { max: 10.0, alpha }, None::<Field>, None)
+    };
+    assert!(lattice(1000.0).is_err());
+    let steep = lattice(5.7).unwrap();
+    assert!(plan(&steep, &[steep.node([0; 3])], Goal::Everything, &Progress::default()).is_ok());
+}

@@ -1,0 +1,158 @@
+//! Several threads share each bucket, with one barrier a bucket; the result is that of one thread, since the least of
+//! the same numbers does not depend on their order.
+
+use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use super::buckets::{Buckets, CHUNK};
+use super::cells::Cells;
+use super::front::{Wanted, Width, advance};
+use crate::graph::{Graph, Node};
+use crate::math::{Cancelled, Progress};
+
+/// Rounds of waiting in place before the processor is offered to others.
+const SPINS: u32 = 4000;
+/// No turn comes after this one.
+const NEVER: u32 = u32::MAX;
+
+/// A meeting point: nobody goes on before all have come.
+struct Barrier {
+    threads: usize,
+    arrived: AtomicUsize,
+    turn: AtomicUsize,
+}
+
+impl Barrier {
+    fn wait(&self) {
+        let turn = self.turn.load(Ordering::Acquire);
+        if self.arrived.fetch_add(1, Ordering::AcqRel) + 1 == self.threads {
+            self.arrived.store(0, Ordering::Relaxed);
+            self.turn.store(turn + 1, Ordering::Release);
+            return;
+        }
+        let mut spins = 0;
+        while self.turn.load(Ordering::Acquire) == turn {
+            spins += 1;
+            // A busy machine must not wait for our waiting.
+            if spins < SPINS { std::hint::spin_loop() } else { std::thread::yield_now() }
+        }
+    }
+}
+
+/// Nodes on their way to the thread that owns them, for the current turn and the next by the parity of the turn.
+type Inbox = [Mutex<Vec<u32>>; 2];
+
+/// What the threads share.
+struct Shared<'a, G> {
+    graph: &'a G,
+    cells: &'a Cells,
+    width: Width,
+    barrier: Barrier,
+    inboxes: Vec<Inbox>,
+    /// How many nodes each of three turns has.
+    counts: [AtomicUsize; 3],
+    /// The turn at which all stop because the work was cancelled.
+    stop: AtomicU32,
+    settled: AtomicUsize,
+}
+
+/// Runs the search from what is in `buckets` on `threads` threads; returns how many nodes were settled.
+pub(super) fn run<G: Graph>(
+    graph: &G,
+    cells: &Cells,
+    width: Width,
+    start: u32,
+    buckets: Buckets,
+    wanted: Option<&[Node]>,
+    threads: usize,
+    progress: &Progress,
+) -> Result<usize, Cancelled> {
+    let shared = Shared {
+        graph,
+        cells,
+        width,
+        barrier: Barrier {
+            threads,
+            arrived: AtomicUsize::new(0),
+            turn: AtomicUsize::new(0),
+        },
+        inboxes: (0..threads).map(|_| Inbox::default()).collect(),
+        counts: Default::default(),
+        stop: AtomicU32::new(NEVER),
+        settled: AtomicUsize::new(0),
+    };
+    std::thread::scope(|scope| {
+        for own in 1..threads {
+            let empty = Buckets::new(width.count());
+            let shared = &shared;
+            scope.spawn(move || shared.work(own, start, empty, Wanted::new(wanted), None));
+        }
+        shared.work(0, start, buckets, Wanted::new(wanted), Some(progress));
+    });
+    if shared.stop.into_inner() != NEVER {
+        return Err(Cancelled);
+    }
+    Ok(shared.settled.into_inner())
+}
+
+impl<G: Graph> Shared<'_, G> {
+    /// The part of thread `own`; the one with `progress` tells the others to stop.
+    ///
+    /// Threads own slabs of the graph, so that they seldom touch each other's cells: a node is pushed by whoever
+    /// reaches it, and sorted to its owner when its bucket is taken.
+    fn work(&self, own: usize, start: u32, mut buckets: Buckets, mut wanted: Wanted, progress: Option<&Progress>) {
+        let Self { graph, cells, width, .. } = *self;
+        let mut base = width.base(start);
+        let mut idle = 0;
+        let mut sorted: Vec<Vec<u32>> = vec![Vec::new(); self.inboxes.len()];
+        for turn in 0_u32.. {
+            let parity = turn as usize % 2;
+            let count = &self.counts[turn as usize % 3];
+            let mut taken = buckets.take(width.bucket(base));
+            while let Some((places, len)) = buckets.next_chunk(&mut taken) {
+                count.fetch_add(len, Ordering::Relaxed);
+                for &node in &places[1..len] {
+                    sorted[graph.slab(Node(node)) as usize % self.inboxes.len()].push(node);
+                }
+            }
+            for (owner, nodes) in sorted.iter_mut().enumerate().filter(|(owner, nodes)| *owner != own && !nodes.is_empty()) {
+                lock(&self.inboxes[owner][parity]).append(nodes);
+            }
+            if let Some(progress) = progress
+                && turn.is_multiple_of(1024)
+            {
+                let share = self.settled.load(Ordering::Relaxed) as f64 / graph.cells() as f64;
+                if progress.report("plan", share).is_err() {
+                    self.stop.store(turn, Ordering::Relaxed);
+                }
+            }
+            self.barrier.wait();
+            // All see the same from here to the next barrier: what is written there is for later turns.
+            if progress.is_some() {
+                self.counts[(turn as usize + 2) % 3].store(0, Ordering::Relaxed);
+            }
+            idle = if count.load(Ordering::Relaxed) == 0 { idle + 1 } else { 0 };
+            let is_over = idle >= width.count() || self.stop.load(Ordering::Relaxed) <= turn;
+            if is_over || wanted.is_done(graph, cells, width, base) {
+                return;
+            }
+            sorted[own].append(&mut lock(&self.inboxes[own][parity]));
+            let mut settled = 0;
+            let mut upcoming = sorted[own].chunks(CHUNK).skip(1);
+            for nodes in sorted[own].chunks(CHUNK) {
+                for &node in upcoming.next().unwrap_or_default() {
+                    cells.prefetch(graph.cell(Node(node)));
+                }
+                settled += advance::<G, true>(graph, cells, width, base, nodes, &mut buckets);
+            }
+            sorted[own].clear();
+            self.settled.fetch_add(settled, Ordering::Relaxed);
+            base = width.next(base);
+        }
+    }
+}
+
+/// The list behind a lock. No thread panics while it holds one.
+fn lock(list: &Mutex<Vec<u32>>) -> MutexGuard<'_, Vec<u32>> {
+    list.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,69 @@
+//! Mutated scenes: `check` and `export` never panic and never hang.
+
+mod support;
+
+use lichtenberg::export::{Origin, Pov, Templates};
+use lichtenberg::files::embedded_scenes;
+use lichtenberg::math::Progress;
+use lichtenberg::scene::{Source, grow, load, model};
+use proptest::prelude::*;
+
+const WORDS: &[&str] = &[
+    "nan", "inf", "-1", "0", "1e300", "-1e-300", "9223372036854775807", "[]", "{}", "\"\"", "\"elm\"", "true", "[[0, 0]]",
+    "[1, 2, 3, 4]", "1979-05-27", "\"\\u0000\"", "{ box = {} }", "0.5", "3", "[", "}", "=", "\n", "[grow]", "like = \"first\"",
+];
+
+/// Scenes small enough that hundreds of them can be grown.
+fn small(text: &str) -> String {
+    text.replace("spacing = 0.16", "spacing = 1.28")
+        .replace("spacing = 0.0", "spacing = 0.1")
+        .replace("count = 1100", "count = 30")
+        .replace("count = 1400", "count = 30")
+        .replace("count = 220", "count = 30")
+        .replace("count = 900", "count = 30")
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(600))]
+
+    #[test]
+    fn mutated_scenes_do_no_harm(
+        which in any::<prop::sample::Index>(),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..4_u8), 1..4),
+    ) {
+        let scenes = embedded_scenes();
+        let (name, text, folder) = which.get(&scenes).clone();
+        let mut tokens: Vec<String> = Vec::new();
+        for c in small(text).chars() {
+            let joins = |last: &String| c.is_alphanumeric() && last.ends_with(|l: char| l.is_alphanumeric());
+            match tokens.last_mut() {
+                Some(last) if joins(last) => last.push(c),
+                _ => tokens.push(c.to_string()),
+            }
+        }
+        for (at, word, how) in changes {
+            let at = at.index(tokens.len());
+            let other = word.index(tokens.len());
+            match how {
+                0 => tokens[at] = (*word.get(WORDS)).to_owned(),
+                1 => tokens[at] = String::new(),
+                2 => tokens[at] = tokens[other].clone(),
+                _ => tokens.swap(at, other),
+            }
+        }
+        let source = Source { name, text: tokens.concat(), folder };
+        match load(&source, &[]) {
+            Err(error) => prop_assert!(!error.mistakes.is_empty() && !error.to_string().is_empty()),
+            Ok(scene) => {
+                if let Ok(grown) = grow(&scene, &[], 32 << 20, &Progress::default())
+                    && let Ok(model) = model(&scene, &grown, [64, 48])
+                {
+                    let mut out = Vec::new();
+                    Pov::new(&model, &Templates::default(), "x", [64, 48], &Origin::default()).write_inc(&mut out).unwrap();
+                    let text = String::from_utf8(out).unwrap();
+                    prop_assert!(!text.contains("NaN") && !text.contains("inf,"));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! What several test programs share.
+#![allow(dead_code, reason = "each test program uses a part")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use lichtenberg::files::embedded_scenes;
+use lichtenberg::scene::{Override, Resolved, Source, load};
+
+/// The command under test.
+pub fn lichtenberg() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_lichtenberg"))
+}
+
+/// Runs the command in `folder` with `args`.
+pub fn run_in(folder: &Path, args: &[&str]) -> Output {
+    lichtenberg().current_dir(folder).args(args).output().expect("the command starts")
+}
+
+/// Runs the command in `folder`; it must succeed. Returns what it printed on stdout.
+pub fn succeed_in(folder: &Path, args: &[&str]) -> String {
+    let output = run_in(folder, args);
+    assert!(output.status.success(), "{args:?}: {}", text(&output.stderr));
+    text(&output.stdout)
+}
+
+pub fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// The names of all embedded scenes.
+pub fn scene_names() -> Vec<String> {
+    embedded_scenes().into_iter().map(|(name, ..)| name).collect()
+}
+
+/// An embedded scene with overrides.
+pub fn embedded(name: &str, overrides: &[(&str, &str)]) -> Resolved {
+    let (name, text, folder) = embedded_scenes().into_iter().find(|(n, ..)| n == name).expect("an embedded scene");
+    let overrides: Vec<_> = overrides
+        .iter()
+        .map(|(path, value)| Override { path: (*path).to_owned(), value: (*value).to_owned() })
+        .collect();
+    let source = Source { name, text: text.to_owned(), folder };
+    load(&source, &overrides).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The real povray; without it the tests fail with a hint, they are not skipped.
+pub fn require_povray() {
+    let found = Command::new("povray").arg("--version").output();
+    assert!(found.is_ok(), "these tests need povray: run ./run-tests, or apt-get install povray povray-includes");
+}
+
+/// The root of the repository.
+pub fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Every file below `folder` whose name ends in `.ending`.
+pub fn files_below(folder: &Path, ending: &str) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            files.extend(files_below(&path, ending));
+        } else if path.extension().is_some_and(|e| e == ending) {
+            files.push(path);
+        }
+    }
+    files.sort();
+    files
+}
