@@ -4,6 +4,8 @@
 //! side, planned from its middle. FOLDER gets `from.u32`, `to.u32` and `weight.u32` (each edge once, little-endian)
 //! and `cost.u64` (by node); stdout gets the best of five times as JSON. Weights and costs are fixed-point integers.
 
+#![allow(clippy::print_stdout, reason = "what it prints is its result")]
+
 use std::error::Error;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};

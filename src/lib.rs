@@ -1,4 +1,56 @@
-//! Lichtenberg
+//! Lichtenberg grows branching things - elms, roots, lightning, coral - by planning least-cost paths through randomly
+//! weighted graphs, and hands them to renderers. This is the library behind the command `lichtenberg`.
+//!
+//! # Vocabulary
+//! A **lattice** is a regular graph; its edges have random **weights**, changed in space by **cost fields**. Paths are
+//! planned from **generators**, the nodes at **cost** zero, to **endpoints**; the union of **paths** is a **skeleton**,
+//! which a **width** makes thick and a **skin** makes solid. A **scene** names all of these in a TOML file.
+//!
+//! # The stages, in the order in which data passes them
+//! | module | makes |
+//! | --- | --- |
+//! | [`math`] | random streams, names, the progress handle |
+//! | [`raster`], [`geom`] | painted maps; shapes, strokes, round cones |
+//! | [`graph`] | lattices whose weights are computed, not stored |
+//! | [`plan`](mod@plan) | least-cost paths: a [`plan::Plan`] |
+//! | [`skeleton`] | the forest of paths, with radii: a [`skeleton::Skeleton`] |
+//! | [`grow`] | the steps of a scene: a [`grow::Grown`] each |
+//! | [`model`] | what renderers and exporters read: a [`model::Model`] |
+//! | [`export`] | POV-Ray and SVG |
+//! | [`files`] | pictures and sketches in and out; whole files or none |
+//! | [`scene`] | scenes with every mistake reported |
+//! | [`render`] | driving POV-Ray |
+//!
+//! A stage imports earlier ones only; a test holds it to that.
+//!
+//! # The whole way
+//! ```
+//! use lichtenberg::export::{Origin, Pov, Templates};
+//! use lichtenberg::files::embedded_scenes;
+//! use lichtenberg::math::Progress;
+//! use lichtenberg::scene::{Override, Source, grow, load, model};
+//!
+//! let (name, text, folder) = embedded_scenes().into_iter().find(|(name, ..)| name == "elm").ok_or("no elm")?;
+//! let source = Source { name, text: text.to_owned(), folder };
+//! let fewer = Override { path: "grow.elm.to.twigs.count".to_owned(), value: "20".to_owned() };
+//!
+//! let scene = load(&source, &[fewer])?;
+//! let grown = grow(&scene, &[], 1 << 30, &Progress::default())?;
+//! assert_eq!(grown[0].skeleton.paths.len(), 38);
+//!
+//! let model = model(&scene, &grown, scene.size)?;
+//! let mut inc = Vec::new();
+//! Pov::new(&model, &Templates::default(), "elm", scene.size, &Origin::default()).write_inc(&mut inc)?;
+//! assert!(String::from_utf8(inc)?.contains("#declare Elm_Height"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The sources are Xu and Mould 2007 (*Modeling dendritic shapes using path planning*), 2008 (*Constructive path
+//! planning for natural phenomena modeling*) and 2012, and Amin's Growth module after Greene's voxel space automata;
+//! equations and figures are cited where they are used.
+
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod export;
 pub mod files;
 pub mod geom;
@@ -11,5 +63,3 @@ pub mod raster;
 pub mod render;
 pub mod scene;
 pub mod skeleton;
-#[cfg(feature = "cli")]
-pub mod cli;

@@ -24,7 +24,10 @@ const STAGES: &[&[&str]] = &[
 ];
 
 fn row(stage: &str) -> usize {
-    STAGES.iter().position(|row| row.contains(&stage)).unwrap_or_else(|| panic!("`{stage}` has no place in the order of stages"))
+    STAGES
+        .iter()
+        .position(|row| row.contains(&stage))
+        .unwrap_or_else(|| panic!("`{stage}` has no place in the order of stages"))
 }
 
 /// The stages that a source text names as `crate::stage`, alone or in a braced list.
@@ -58,11 +61,17 @@ fn stages_import_only_earlier_ones() {
         let stage = path.file_name().unwrap().to_str().unwrap().to_owned();
         for file in files_below(&path, "rs") {
             // Comments may name any stage.
-            let code: String = fs::read_to_string(&file).unwrap().lines().filter(|l| !l.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
+            let code: String = fs::read_to_string(&file)
+                .unwrap()
+                .lines()
+                .filter(|l| !l.trim_start().starts_with("//"))
+                .collect::<Vec<_>>()
+                .join("\n");
             for import in imports(&code) {
                 assert!(
                     import == stage || row(&import) < row(&stage),
-                    "{} imports `{import}`, which is not before `{stage}`", file.display()
+                    "{} imports `{import}`, which is not before `{stage}`",
+                    file.display()
                 );
             }
         }

@@ -48,7 +48,11 @@ fn bad(from: &str, to: &str, words: &[&str]) {
 
 #[test]
 fn bad_scenes_get_one_clear_error() {
-    bad("space = \"sheet\"", "spcae = \"sheet\"", &["twig.toml:6:1", "did you mean `space`", "the key `space` is missing"]);
+    bad(
+        "space = \"sheet\"",
+        "spcae = \"sheet\"",
+        &["twig.toml:6:1", "did you mean `space`", "the key `space` is missing"],
+    );
     bad("spacing = 0.1", "spacing = \"wide\"", &["twig.toml:4", "expected a number", "found text"]);
     bad("spacing = 0.1", "spacing = nan", &["expected a number, found NaN"]);
     bad("spacing = 0.1", "spacing = -1", &["above 0", "found -1"]);
@@ -72,7 +76,11 @@ fn bad_scenes_get_one_clear_error() {
     bad("[object.twig]", "[object.\"../x\"]", &["is no name"]);
     bad("title = \"Twig\"", "title = Twig", &["twig.toml:1"]);
     bad("title = \"Twig\"", "title = \"Twig\"\nseed = -3", &["twig.toml:2"]);
-    bad("[grow.twig]", "forbid = { box = { min = [-9, 0.45], max = [9, 0.55] } }\n[grow.twig]", &["no path reaches", "unreached = \"drop\""]);
+    bad(
+        "[grow.twig]",
+        "forbid = { box = { min = [-9, 0.45], max = [9, 0.55] } }\n[grow.twig]",
+        &["no path reaches", "unreached = \"drop\""],
+    );
     bad("[grow.twig]", "like = \"sheet\"\n[grow.twig]", &["like itself"]);
     bad("[grow.twig]", "field.map.of.map.file = \"gone.png\"\n[grow.twig]", &["cannot read `gone.png`"]);
     bad("[grow.twig]", "field.map.of.map.file = \"twig.toml\"\n[grow.twig]", &["not a PNG or JPEG"]);
@@ -85,7 +93,10 @@ fn bad_scenes_get_one_clear_error() {
 
 #[test]
 fn every_mistake_is_reported() {
-    let text = TWIG.replace("spacing = 0.1", "spacing = -1").replace("count = 5", "cuont = 5").replace("width.constant = 0.02", "width.constant = \"x\"");
+    let text = TWIG
+        .replace("spacing = 0.1", "spacing = -1")
+        .replace("count = 5", "cuont = 5")
+        .replace("width.constant = 0.02", "width.constant = \"x\"");
     let folder = folder_with("twig.toml", &text);
     fails(folder.path(), &["check", "twig"], 2, &["found -1", "did you mean `count`", "found text"]);
     let output = run_in(folder.path(), &["check", "twig", "--json"]);
@@ -107,12 +118,17 @@ fn bad_pictures_are_named() {
     huge[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
     for bytes in [&good[..good.len() / 2], &huge[..], b"\x89PNG\r\n\x1a\n", b""] {
         fs::write(folder.path().join("map.png"), bytes).unwrap();
-        fails(folder.path(), &["export", "twig", "--to", "svg"], 2, &["cannot read `map.png`", "space.sheet.field.map"]);
+        fails(
+            folder.path(),
+            &["export", "twig", "--to", "svg"],
+            2,
+            &["cannot read `map.png`", "space.sheet.field.map"],
+        );
     }
     fs::write(folder.path().join("map.png"), good).unwrap();
     succeed_in(folder.path(), &["export", "twig", "--to", "svg"]);
     let sketch = with_map.replace("map.file = \"map.png\"", "sketch.file = \"s.svg\"").replace("of.map", "of");
-    fs::write(folder.path().join("twig.toml"), sketch.replace("of.sketch", "of.sketch")).unwrap();
+    fs::write(folder.path().join("twig.toml"), sketch).unwrap();
     fs::write(folder.path().join("s.svg"), "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'/>").unwrap();
     fails(folder.path(), &["check", "twig"], 2, &["it has no paths"]);
 }
@@ -146,10 +162,8 @@ fn bad_calls_get_one_clear_error() {
 fn a_full_disk_leaves_nothing() {
     let folder = folder_with("twig.toml", TWIG);
     // A limit on file size stands for the full disk; the shell ignores its signal, so that writing fails.
-    let script = format!(
-        "trap '' XFSZ; ulimit -f 8; exec {} export elm --to pov -o out",
-        env!("CARGO_BIN_EXE_lichtenberg")
-    );
+    let script =
+        format!("trap '' XFSZ; ulimit -f 8; exec {} export elm --to pov -o out", env!("CARGO_BIN_EXE_lichtenberg"));
     let output = std::process::Command::new("bash").current_dir(folder.path()).args(["-c", &script]).output().unwrap();
     assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
     assert!(text(&output.stderr).contains("cannot write"));
@@ -192,16 +206,43 @@ fn scene_text_stays_in_its_comment() {
 fn many_at_once() {
     let folder = folder_with("twig.toml", TWIG);
     let at = folder.path();
-    let made = succeed_in(at, &["render", "twig", "--schematic", "--seeds", "1-3", "--size", "64x64", "-o", "out/{scene}_{seed}.png"]);
+    let made = succeed_in(
+        at,
+        &["render", "twig", "--schematic", "--seeds", "1-3", "--size", "64x64", "-o", "out/{scene}_{seed}.png"],
+    );
     assert_eq!(made.lines().collect::<Vec<_>>(), ["out/twig_1.png", "out/twig_2.png", "out/twig_3.png"]);
     fs::write(at.join("out/twig_2.png"), b"kept").unwrap();
-    let again = succeed_in(at, &["render", "twig", "--schematic", "--seeds", "1-4", "--size", "64x64", "-o", "out/{scene}_{seed}.png", "--skip-existing"]);
+    let again = succeed_in(
+        at,
+        &[
+            "render",
+            "twig",
+            "--schematic",
+            "--seeds",
+            "1-4",
+            "--size",
+            "64x64",
+            "-o",
+            "out/{scene}_{seed}.png",
+            "--skip-existing",
+        ],
+    );
     assert_eq!(again.trim(), "out/twig_4.png");
     assert_eq!(fs::read(at.join("out/twig_2.png")).unwrap(), b"kept");
     // The sweep of Fig. 2 on a contact sheet, in one call.
     let sheet = succeed_in(
         at,
-        &["render", "twig", "--schematic", "--sweep", "space.sheet.weights.alpha=0.3,1,3", "--sheet", "sheet.png", "--size", "64x64"],
+        &[
+            "render",
+            "twig",
+            "--schematic",
+            "--sweep",
+            "space.sheet.weights.alpha=0.3,1,3",
+            "--sheet",
+            "sheet.png",
+            "--size",
+            "64x64",
+        ],
     );
     assert_eq!(sheet.trim(), "sheet.png");
     let picture = lichtenberg::files::decode_png(&fs::read(at.join("sheet.png")).unwrap()).unwrap();

@@ -36,7 +36,8 @@ fn every_scene_renders_without_a_warning() {
     require_povray();
     let folder = tempfile::tempdir().unwrap();
     for name in scene_names() {
-        let output = run_in(folder.path(), &["render", &name, "--with", "povray", "--size", "160x120", "-o", "{scene}.png"]);
+        let output =
+            run_in(folder.path(), &["render", &name, "--with", "povray", "--size", "160x120", "-o", "{scene}.png"]);
         let said = text(&output.stderr);
         assert!(output.status.success() && !said.contains("Warning"), "{name}: {said}");
         let path = folder.path().join(text(&output.stdout).trim());
@@ -56,7 +57,20 @@ fn the_include_file_is_a_good_guest() {
     for (seed, name) in [("1", "oak"), ("2", "ash")] {
         succeed_in(
             folder.path(),
-            &["export", "elm", "--seed", seed, "--name", name, "--to", "pov", "-o", "parts", "--set", "grow.elm.to.twigs.count=40"],
+            &[
+                "export",
+                "elm",
+                "--seed",
+                seed,
+                "--name",
+                name,
+                "--to",
+                "pov",
+                "-o",
+                "parts",
+                "--set",
+                "grow.elm.to.twigs.count=40",
+            ],
         );
     }
     fs::write(
@@ -94,8 +108,16 @@ fn the_shape_is_not_mirrored() {
     require_povray();
     let folder = tempfile::tempdir().unwrap();
     let arm = [
-        "--set", "grow.cactus.to.arms.at=[[1.5, 0, 5]]", "--set", "camera.turn=0", "--set", "camera.room=0",
-        "--size", "160x120", "-o", "out.png",
+        "--set",
+        "grow.cactus.to.arms.at=[[1.5, 0, 5]]",
+        "--set",
+        "camera.turn=0",
+        "--set",
+        "camera.room=0",
+        "--size",
+        "160x120",
+        "-o",
+        "out.png",
     ];
     succeed_in(folder.path(), &[&["render", "cactus", "--with", "povray"], &arm[..]].concat());
     let front = decode_png(&fs::read(folder.path().join("out.png")).unwrap()).unwrap();
@@ -112,7 +134,9 @@ fn the_shape_is_not_mirrored() {
     };
     let green = |p: &[u8]| p[1] > p[0] && p[1] > p[2];
     let black = |p: &[u8]| p[0] < 128;
-    let shift = |picture: &Rgba, is_ink: &dyn Fn(&[u8]) -> bool| middle(picture, is_ink, 25..55) - middle(picture, is_ink, 75..100);
+    let shift = |picture: &Rgba, is_ink: &dyn Fn(&[u8]) -> bool| {
+        middle(picture, is_ink, 25..55) - middle(picture, is_ink, 75..100)
+    };
     let (front, drawn) = (shift(&front, &green), shift(&drawn, &black));
     assert!(front > 4.0 && drawn > 4.0, "the arm is not on the right: {front}, {drawn}");
 }
@@ -123,12 +147,27 @@ fn schematic_and_povray_agree() {
     require_povray();
     let folder = tempfile::tempdir().unwrap();
     for (scene, size) in [("papers/2008-fig01", "160x120"), ("papers/2008-fig06", "160x120")] {
-        let thick = format!("grow.{}.width={{ constant = 0.05 }}", if scene.contains("fig06") { "few" } else { "centre" });
-        let common = [scene, "--size", size, "-o", "out.png", "--set", &thick, "--set", "sky={ horizon = [1, 1, 1], zenith = [1, 1, 1] }"];
+        let thick =
+            format!("grow.{}.width={{ constant = 0.05 }}", if scene.contains("fig06") { "few" } else { "centre" });
+        let common = [
+            scene,
+            "--size",
+            size,
+            "-o",
+            "out.png",
+            "--set",
+            &thick,
+            "--set",
+            "sky={ horizon = [1, 1, 1], zenith = [1, 1, 1] }",
+        ];
         let mut pictures = Vec::new();
         for how in [&["render", "--schematic"][..], &["render", "--with", "povray"]] {
             // Without a ground both have white behind.
-            let ground = if scene.contains("fig06") { &["--set", "ground={ colour = [1, 1, 1], height = -100 }"][..] } else { &[] };
+            let ground = if scene.contains("fig06") {
+                &["--set", "ground={ colour = [1, 1, 1], height = -100 }"][..]
+            } else {
+                &[]
+            };
             succeed_in(folder.path(), &[how, &common, ground].concat());
             pictures.push(decode_png(&fs::read(folder.path().join("out.png")).unwrap()).unwrap());
         }
@@ -191,7 +230,8 @@ fn signals_stop_the_child() {
         assert_eq!(files(folder.path()), Vec::<String>::new(), "something is left behind");
         // povray had this folder as its own: no process does now.
         let of = |pid: &str| fs::read_link(format!("/proc/{pid}/cwd")).is_ok_and(|cwd| cwd.starts_with(folder.path()));
-        let left = fs::read_dir("/proc").unwrap().filter(|e| of(&e.as_ref().unwrap().file_name().to_string_lossy())).count();
+        let left =
+            fs::read_dir("/proc").unwrap().filter(|e| of(&e.as_ref().unwrap().file_name().to_string_lossy())).count();
         assert_eq!(left, 0, "povray is still running");
     }
 }

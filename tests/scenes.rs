@@ -30,7 +30,11 @@ fn scenes_hold_what_they_claim() {
         assert!(!findings.is_empty(), "{name} claims nothing");
         for finding in findings {
             claims += 1;
-            assert!(finding.holds, "{name}: {} ({}): {}, not {}", finding.claim, finding.says, finding.measured, finding.against);
+            assert!(
+                finding.holds,
+                "{name}: {} ({}): {}, not {}",
+                finding.claim, finding.says, finding.measured, finding.against
+            );
         }
     }
     assert!(claims >= 25);
@@ -45,7 +49,11 @@ fn claims_can_fail() {
         ("papers/2008-fig06", ("grow.many.to.tips.stream", "others"), "same"),
         ("cactus", ("space.air.forbid.box", "{ min = [8, 8, 8], max = [9, 9, 9] }"), "stem"),
     ] {
-        let changes = if name == "cactus" { vec![("space.air.forbid", "{ box = { min = [8, 8, 8], max = [9, 9, 9] } }")] } else { vec![change] };
+        let changes = if name == "cactus" {
+            vec![("space.air.forbid", "{ box = { min = [8, 8, 8], max = [9, 9, 9] } }")]
+        } else {
+            vec![change]
+        };
         let scene = embedded(name, &changes);
         let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
         let finding = check_claims(&scene.claims, &grown).into_iter().find(|f| f.claim == claim).unwrap();

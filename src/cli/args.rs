@@ -13,7 +13,7 @@ use crate::scene::Override;
 pub struct Args {
     #[command(subcommand)]
     pub command: Command,
-    /// Say nothing but errors
+    /// No progress and no notes: results and errors only
     #[arg(long, short, global = true)]
     pub quiet: bool,
     /// Print results as JSON
@@ -233,10 +233,7 @@ const MOST_JOBS: usize = 100_000;
 
 fn parse_override(text: &str) -> Result<Override, String> {
     let (path, value) = text.split_once('=').ok_or("a change is PATH=VALUE, as in grow.elm.to.limbs.count=30")?;
-    Ok(Override {
-        path: path.trim().to_owned(),
-        value: value.trim().to_owned(),
-    })
+    Ok(Override { path: path.trim().to_owned(), value: value.trim().to_owned() })
 }
 
 fn parse_seeds(text: &str) -> Result<Seeds, String> {
@@ -273,10 +270,7 @@ fn parse_sweep(text: &str) -> Result<Sweep, String> {
             last.push(c);
         }
     }
-    Ok(Sweep {
-        path: change.path,
-        values: values.into_iter().map(|v| v.trim().to_owned()).collect(),
-    })
+    Ok(Sweep { path: change.path, values: values.into_iter().map(|v| v.trim().to_owned()).collect() })
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {

@@ -43,7 +43,11 @@ pub fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
                 let word = if finding.holds { "holds" } else { "DOES NOT HOLD" };
                 console.line(&format!(
                     "{}: {} {word}: {:.4}, {} ({})",
-                    job.name(), finding.claim, finding.measured, finding.against, finding.says
+                    job.name(),
+                    finding.claim,
+                    finding.measured,
+                    finding.against,
+                    finding.says
                 ));
             }
             if !finding.holds {

@@ -90,7 +90,9 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
         }
         console.line(&format!(
             "  {} primitives, {:.1} MB as POV-Ray, {:.1} MB of memory at most",
-            model.primitives(), count.0 as f64 / 1e6, scene.bytes_needed() as f64 / 1e6
+            model.primitives(),
+            count.0 as f64 / 1e6,
+            scene.bytes_needed() as f64 / 1e6
         ));
         let times: Vec<_> = seconds.iter().map(|(stage, s)| format!("{stage} {s:.3} s")).collect();
         console.line(&format!("  {}", times.join(", ")));

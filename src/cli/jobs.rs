@@ -53,11 +53,7 @@ pub fn find_scene(name: &str, console: &Console) -> Result<Source, Failure> {
         return read_scene(path);
     }
     if let Some((name, text, folder)) = inside {
-        return Ok(Source {
-            name: name.clone(),
-            text: (*text).to_owned(),
-            folder: folder.clone(),
-        });
+        return Ok(Source { name: name.clone(), text: (*text).to_owned(), folder: folder.clone() });
     }
     let hint = unknown("scene file or embedded scene", name, embedded.iter().map(|(name, ..)| name));
     Err(Failure::Usage(hint))
@@ -73,11 +69,7 @@ fn read_scene(path: &Path) -> Result<Source, Failure> {
     let text = String::from_utf8(text)
         .map_err(|_| Failure::Usage(format!("{} is not UTF-8 text: that is no scene", path.display())))?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    Ok(Source {
-        name: path.display().to_string(),
-        text,
-        folder: Folder::Disk(folder.to_owned()),
-    })
+    Ok(Source { name: path.display().to_string(), text, folder: Folder::Disk(folder.to_owned()) })
 }
 
 impl Jobs {
@@ -130,12 +122,7 @@ impl Jobs {
         for sweep in args.sweep.iter().filter(|sweep| sweep.values.len() > 1) {
             pattern.push_str(&format!("_{{{}}}", sweep.path));
         }
-        Ok(Self {
-            list,
-            pattern,
-            size: args.size,
-            max_memory: args.max_memory.unwrap_or_else(memory::default_limit),
-        })
+        Ok(Self { list, pattern, size: args.size, max_memory: args.max_memory.unwrap_or_else(memory::default_limit) })
     }
 
     /// The output of each job by `pattern`.
@@ -164,16 +151,31 @@ impl Jobs {
     }
 
     /// Grows a scene.
-    pub fn grow(&self, scene: &Resolved, show: &[MarkKind], console: &Console, progress: &Progress) -> Result<Vec<Grown>, Failure> {
+    pub fn grow(
+        &self,
+        scene: &Resolved,
+        show: &[MarkKind],
+        console: &Console,
+        progress: &Progress,
+    ) -> Result<Vec<Grown>, Failure> {
         let grown = scene::grow(scene, show, self.max_memory, progress)?;
         for step in grown.iter().filter(|step| step.dropped > 0) {
-            console.note(&format!("warning: step `{}` dropped {} endpoints that no path reaches", step.name, step.dropped));
+            console.note(&format!(
+                "warning: step `{}` dropped {} endpoints that no path reaches",
+                step.name, step.dropped
+            ));
         }
         Ok(grown)
     }
 
     /// The whole way from a job to its model.
-    pub fn model(&self, scene: &Resolved, show: &[MarkKind], console: &Console, progress: &Progress) -> Result<Model, Failure> {
+    pub fn model(
+        &self,
+        scene: &Resolved,
+        show: &[MarkKind],
+        console: &Console,
+        progress: &Progress,
+    ) -> Result<Model, Failure> {
         let grown = self.grow(scene, show, console, progress)?;
         Ok(scene::model(scene, &grown, scene.size)?)
     }
@@ -195,10 +197,7 @@ impl Job {
         let scene = Path::new(&self.given).file_name().map_or("scene".into(), |n| n.to_string_lossy());
         let scene = if self.source.name == self.given { self.given.as_str().into() } else { scene };
         let sets = self.overrides.iter().filter(|o| o.path != "seed").map(|o| format!(" --set {}={}", o.path, o.value));
-        Origin {
-            command: format!("lichtenberg {verb} {scene} --seed {seed}{}", sets.collect::<String>()),
-            seed,
-        }
+        Origin { command: format!("lichtenberg {verb} {scene} --seed {seed}{}", sets.collect::<String>()), seed }
     }
 }
 
@@ -247,7 +246,10 @@ mod tests {
 
     #[test]
     fn sweeps_multiply() {
-        let sweep = |path: &str, values: &[&str]| Sweep { path: path.to_owned(), values: values.iter().map(|v| (*v).to_owned()).collect() };
+        let sweep = |path: &str, values: &[&str]| Sweep {
+            path: path.to_owned(),
+            values: values.iter().map(|v| (*v).to_owned()).collect(),
+        };
         assert_eq!(choices(&[sweep("a", &["1", "2"]), sweep("b", &["x", "y", "z"])]).len(), 6);
         assert_eq!(choices(&[]).len(), 1);
     }

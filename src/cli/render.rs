@@ -93,11 +93,8 @@ fn draw(
 ) -> Result<Rgba, Failure> {
     let progress = console.progress(if job.label.is_empty() { job.name() } else { &job.label });
     if args.schematic {
-        let show: Vec<MarkKind> = if args.show.is_empty() {
-            scene.show.clone()
-        } else {
-            args.show.iter().map(|&s| s.into()).collect()
-        };
+        let show: Vec<MarkKind> =
+            if args.show.is_empty() { scene.show.clone() } else { args.show.iter().map(|&s| s.into()).collect() };
         let model = jobs.model(scene, &show, console, &progress)?;
         let mut svg = Vec::new();
         write_svg(&model, SvgOptions { size: scene.size }, &mut svg)
@@ -113,11 +110,7 @@ fn draw(
     let name = "scene";
     let pov = Pov::new(&model, &templates, name, scene.size, &job.origin(scene.seed, "render"));
     write_pov(&pov, folder.path(), name, true)?;
-    let povray = Povray {
-        size: scene.size,
-        antialias: args.antialias == Switch::On,
-        threads,
-    };
+    let povray = Povray { size: scene.size, antialias: args.antialias == Switch::On, threads };
     let rendered = povray.render(folder.path(), "scene.pov", "scene.png", &progress)?;
     for warning in &rendered.warnings {
         console.note(&format!("povray: {warning}"));
@@ -131,11 +124,7 @@ fn draw(
 fn write_picture(path: &Path, picture: &Rgba, scene: &Resolved) -> Result<(), Failure> {
     let software = format!("lichtenberg {}", env!("CARGO_PKG_VERSION"));
     let document = scene.document().to_string();
-    let texts = [
-        ("Title", scene.title.as_str()),
-        ("Software", software.as_str()),
-        ("Scene", document.as_str()),
-    ];
+    let texts = [("Title", scene.title.as_str()), ("Software", software.as_str()), ("Scene", document.as_str())];
     write_whole(path, |out| encode_png(picture, &texts, out)).map_err(|e| Failure::file("write", path, &e))
 }
 

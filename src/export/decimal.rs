@@ -66,9 +66,8 @@ mod tests {
 
     #[test]
     fn says_no_more_than_it_must() {
-        let texts: Vec<_> = [0.0, 1.0, -0.25, 1200.0, 0.000_01, 12.345_678, -0.000_001]
-            .map(|x| number(x, Digits(5)))
-            .to_vec();
+        let texts: Vec<_> =
+            [0.0, 1.0, -0.25, 1200.0, 0.000_01, 12.345_678, -0.000_001].map(|x| number(x, Digits(5))).to_vec();
         assert_eq!(texts, ["0", "1", "-.25", "1200", ".00001", "12.34568", "0"].map(|t| t.replace("-0", "0")));
     }
 

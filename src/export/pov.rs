@@ -174,18 +174,9 @@ impl<'a> Pov<'a> {
             inline: model.primitives() > MOST_COPIED,
             objects: objects.collect(),
             materials: materials.collect(),
-            camera: CameraValues {
-                kind,
-                location: point(camera.at),
-                look_at: point(camera.look_at),
-                angle,
-                width,
-            },
+            camera: CameraValues { kind, location: point(camera.at), look_at: point(camera.look_at), angle, width },
             lights: model.lights.iter().map(|light| light_values(light, extent, &point)).collect(),
-            sky: SkyValues {
-                horizon: colour(model.sky.horizon),
-                zenith: colour(model.sky.zenith),
-            },
+            sky: SkyValues { horizon: colour(model.sky.horizon), zenith: colour(model.sky.zenith) },
             ground: model.ground.map(|ground| GroundValues {
                 height: number(ground.height, digits),
                 colour: colour(ground.material.colour),
@@ -256,13 +247,9 @@ fn light_values(light: &Light, extent: f64, point: &dyn Fn(DVec3) -> String) -> 
                 shadow,
             }
         }
-        Light::Point { at, colour: c, shadow } => LightValues {
-            location: point(at),
-            colour: colour(c),
-            parallel: false,
-            across: None,
-            shadow,
-        },
+        Light::Point { at, colour: c, shadow } => {
+            LightValues { location: point(at), colour: colour(c), parallel: false, across: None, shadow }
+        }
     }
 }
 

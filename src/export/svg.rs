@@ -37,11 +37,8 @@ pub fn write_svg(model: &Model, options: SvgOptions, mut out: impl Write) -> io:
     for object in &model.objects {
         let (_, material) = &model.materials[object.material];
         write!(out, r#"<path fill="{}" d=""#, ink(material))?;
-        let balls: Vec<Option<Disc>> = object
-            .balls
-            .iter()
-            .map(|ball| view.disc(object.foot + ball.centre, ball.radius))
-            .collect();
+        let balls: Vec<Option<Disc>> =
+            object.balls.iter().map(|ball| view.disc(object.foot + ball.centre, ball.radius)).collect();
         for &[a, b] in &object.segments {
             if let (Some(a), Some(b)) = (balls[a as usize], balls[b as usize]) {
                 write_stroke(a, b, &mut out)?;
@@ -76,10 +73,7 @@ impl View<'_> {
     fn disc(&self, centre: DVec3, radius: f64) -> Option<Disc> {
         let Projected { x, y, scale, .. } = self.camera.project(centre)?;
         let [width, height] = self.size.map(f64::from);
-        Some(Disc {
-            centre: DVec2::new(x * width, y * height),
-            radius: (radius * scale * width).max(HAIRLINE),
-        })
+        Some(Disc { centre: DVec2::new(x * width, y * height), radius: (radius * scale * width).max(HAIRLINE) })
     }
 }
 
@@ -88,9 +82,17 @@ fn write_stroke(a: Disc, b: Disc, out: &mut impl Write) -> io::Result<()> {
     let way = b.centre - a.centre;
     let length = way.length();
     let sin = (a.radius - b.radius) / length;
-    if !(sin.abs() < 1.0) {
+    // Not a number where the discs share their middle.
+    if sin.is_nan() || sin.abs() >= 1.0 {
         let Disc { centre: c, radius: r } = if a.radius > b.radius { a } else { b };
-        return writeln!(out, "M{:.2} {:.2}a{r:.2} {r:.2} 0 1 1 {:.2} 0a{r:.2} {r:.2} 0 1 1 {:.2} 0z", c.x - r, c.y, 2.0 * r, -2.0 * r);
+        return writeln!(
+            out,
+            "M{:.2} {:.2}a{r:.2} {r:.2} 0 1 1 {:.2} 0a{r:.2} {r:.2} 0 1 1 {:.2} 0z",
+            c.x - r,
+            c.y,
+            2.0 * r,
+            -2.0 * r
+        );
     }
     let (u, cos) = (way / length, libm::sqrt(1.0 - sin * sin));
     let side = DVec2::new(-u.y, u.x);
@@ -133,7 +135,10 @@ fn write_marks(marks: &[Mark], kind: MarkKind, view: View<'_>, out: &mut impl Wr
     }
     if !lines.is_empty() {
         let width = width * pixels;
-        writeln!(out, r#"<path fill="none" stroke="{colour}" stroke-width="{width:.2}" stroke-linecap="round" d="{lines}"/>"#)?;
+        writeln!(
+            out,
+            r#"<path fill="none" stroke="{colour}" stroke-width="{width:.2}" stroke-linecap="round" d="{lines}"/>"#
+        )?;
     }
     if !dots.is_empty() {
         let (fill, stroke) = if kind == MarkKind::Endpoints { ("#fff", colour) } else { (colour, "none") };

@@ -32,9 +32,7 @@ pub struct Templates {
 
 impl Default for Templates {
     fn default() -> Self {
-        Self {
-            texts: EMBEDDED.map(|(name, text)| (name.to_owned(), text.to_owned())).into(),
-        }
+        Self { texts: EMBEDDED.map(|(name, text)| (name.to_owned(), text.to_owned())).into() }
     }
 }
 
@@ -57,15 +55,8 @@ impl Templates {
         let mut engine = Environment::new();
         engine.set_undefined_behavior(UndefinedBehavior::SemiStrict);
         engine.set_auto_escape_callback(|_| AutoEscape::None);
-        let lines = SyntaxConfig::builder()
-            .trim_blocks(true)
-            .lstrip_blocks(true)
-            .keep_trailing_newline(true)
-            .build();
-        let error = |error: minijinja::Error| TemplateError {
-            name: name.to_owned(),
-            message: error.to_string(),
-        };
+        let lines = SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).keep_trailing_newline(true).build();
+        let error = |error: minijinja::Error| TemplateError { name: name.to_owned(), message: error.to_string() };
         engine.set_syntax(lines.map_err(error)?);
         engine
             .template_from_named_str(name, self.texts.get(name).map_or("", String::as_str))

@@ -26,11 +26,7 @@ impl Rgba {
     /// A white picture.
     #[must_use]
     pub fn white(width: u32, height: u32) -> Self {
-        Self {
-            width,
-            height,
-            bytes: vec![255; width as usize * height as usize * 4],
-        }
+        Self { width, height, bytes: vec![255; width as usize * height as usize * 4] }
     }
 
     /// Copies `other`, laid over white, to `(x, y)`; what falls outside is lost.

@@ -37,7 +37,8 @@ impl Page {
 /// # Errors
 /// A sentence: no SVG, no paths, or too many points.
 pub fn decode_sketch(bytes: &[u8]) -> Result<Page, String> {
-    let tree = Tree::from_data(bytes, &usvg::Options::default()).map_err(|e| format!("it is not an SVG picture: {e}"))?;
+    let tree =
+        Tree::from_data(bytes, &usvg::Options::default()).map_err(|e| format!("it is not an SVG picture: {e}"))?;
     let mut page = Page::default();
     let mut points = 0;
     visit(tree.root(), &tree, &mut page, &mut points)?;
@@ -67,10 +68,7 @@ fn flatten(path: &tiny_skia::Path, transform: Transform, tree: &Tree, page: &mut
     let size = tree.size();
     let place = |mut p: Point| {
         transform.map_point(&mut p);
-        DVec2::new(
-            f64::from(p.x) / f64::from(size.width()),
-            1.0 - f64::from(p.y) / f64::from(size.height()),
-        )
+        DVec2::new(f64::from(p.x) / f64::from(size.width()), 1.0 - f64::from(p.y) / f64::from(size.height()))
     };
     let mut line: Vec<DVec2> = Vec::new();
     let mut last = Point::zero();
@@ -135,10 +133,14 @@ pub fn draw_svg(svg: &str, fonts: &[&'static [u8]]) -> Result<Rgba, String> {
     Ok(Rgba {
         width: size.width(),
         height: size.height(),
-        bytes: pixels.pixels().iter().flat_map(|p| {
-            let c = p.demultiply();
-            [c.red(), c.green(), c.blue(), c.alpha()]
-        }).collect(),
+        bytes: pixels
+            .pixels()
+            .iter()
+            .flat_map(|p| {
+                let c = p.demultiply();
+                [c.red(), c.green(), c.blue(), c.alpha()]
+            })
+            .collect(),
     })
 }
 

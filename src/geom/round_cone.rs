@@ -23,18 +23,13 @@ pub struct Frustum {
 pub fn frustum(a: DVec3, ra: f64, b: DVec3, rb: f64) -> Option<Frustum> {
     let l = (b - a).length();
     let sin = (ra - rb) / l;
-    // Also false where L is 0 and sin is not a number.
-    if !(sin.abs() < 1.0) {
+    // Not a number where L is 0 and the radii are equal.
+    if sin.is_nan() || sin.abs() >= 1.0 {
         return None;
     }
     let u = (b - a) / l;
     let cos = libm::sqrt(1.0 - sin * sin);
-    Some(Frustum {
-        a: a + u * (ra * sin),
-        ra: ra * cos,
-        b: b + u * (rb * sin),
-        rb: rb * cos,
-    })
+    Some(Frustum { a: a + u * (ra * sin), ra: ra * cos, b: b + u * (rb * sin), rb: rb * cos })
 }
 
 #[cfg(test)]

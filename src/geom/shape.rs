@@ -77,9 +77,7 @@ impl<'de> Deserialize<'de> for ShapeSpec {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         match serde_json::Value::deserialize(deserializer)? {
             serde_json::Value::String(name) => Ok(Self::Named(Ref::new(name))),
-            value => Solid::deserialize(value)
-                .map(|solid| Self::Inline(Box::new(solid)))
-                .map_err(D::Error::custom),
+            value => Solid::deserialize(value).map(|solid| Self::Inline(Box::new(solid))).map_err(D::Error::custom),
         }
     }
 }
@@ -113,27 +111,18 @@ pub struct Bounds {
 
 impl Bounds {
     /// The bounds of nothing: any union with it is the other.
-    pub const EMPTY: Self = Self {
-        min: DVec3::INFINITY,
-        max: DVec3::NEG_INFINITY,
-    };
+    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
 
     /// The least box that holds both.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
-        Self {
-            min: self.min.min(other.min),
-            max: self.max.max(other.max),
-        }
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
     /// The box around a ball.
     #[must_use]
     pub fn of_ball(centre: DVec3, radius: f64) -> Self {
-        Self {
-            min: centre - radius,
-            max: centre + radius,
-        }
+        Self { min: centre - radius, max: centre + radius }
     }
 
     /// Extent along each axis.
@@ -164,20 +153,14 @@ impl ShapeSpec {
         self.resolve_within(named, &mut Vec::new())
     }
 
-    fn resolve_within(
-        &self,
-        named: &BTreeMap<String, ShapeSpec>,
-        within: &mut Vec<String>,
-    ) -> Result<Shape, String> {
+    fn resolve_within(&self, named: &BTreeMap<String, ShapeSpec>, within: &mut Vec<String>) -> Result<Shape, String> {
         let solid = match self {
             Self::Inline(solid) => solid,
             Self::Named(Ref { name, .. }) => {
                 if within.contains(name) {
                     return Err(format!("shape `{name}` is made of itself"));
                 }
-                let spec = named
-                    .get(name)
-                    .ok_or_else(|| unknown("shape", name, named.keys()))?;
+                let spec = named.get(name).ok_or_else(|| unknown("shape", name, named.keys()))?;
                 within.push(name.clone());
                 let shape = spec.resolve_within(named, within);
                 within.pop();
@@ -270,18 +253,13 @@ impl Shape {
         match &*self.0 {
             Solid::Box { min, max } => Bounds { min: min.0, max: max.0 },
             Solid::Sphere { centre, radius } => Bounds::of_ball(centre.0, *radius),
-            Solid::Ellipsoid { centre, radii } => Bounds {
-                min: centre.0 - radii.0,
-                max: centre.0 + radii.0,
-            },
-            Solid::Cylinder { from, to, radius } | Solid::Capsule { from, to, radius } => {
-                both(from.0, to.0, *radius)
-            }
+            Solid::Ellipsoid { centre, radii } => Bounds { min: centre.0 - radii.0, max: centre.0 + radii.0 },
+            Solid::Cylinder { from, to, radius } | Solid::Capsule { from, to, radius } => both(from.0, to.0, *radius),
             Solid::Union(of) => of.iter().map(Self::bounds).fold(Bounds::EMPTY, Bounds::union),
-            Solid::Intersection(of) => of[1..].iter().map(Self::bounds).fold(of[0].bounds(), |a, b| Bounds {
-                min: a.min.max(b.min),
-                max: a.max.min(b.max),
-            }),
+            Solid::Intersection(of) => of[1..]
+                .iter()
+                .map(Self::bounds)
+                .fold(of[0].bounds(), |a, b| Bounds { min: a.min.max(b.min), max: a.max.min(b.max) }),
             Solid::Difference(of) => of[0].bounds(),
         }
     }
@@ -325,8 +303,14 @@ mod tests {
             ("s.ellipsoid = { centre = [0, 0, 0], radii = [1, 1, 1] }", 2.0),
             ("s.cylinder = { from = [0, 0, -1], to = [0, 0, 1], radius = 1 }", 2.0),
             ("s.capsule = { from = [0, 0, 0], to = [4, 0, 0], radius = 1 }", -1.0),
-            ("s.union = [\"t\", { sphere = { centre = [3, 0, 0], radius = 2 } }]\nt.sphere = { centre = [0, 0, 0], radius = 1 }", -2.0),
-            ("s.difference = [{ sphere = { centre = [3, 0, 0], radius = 2 } }, { sphere = { centre = [3, 0, 0], radius = 1 } }]", 1.0),
+            (
+                "s.union = [\"t\", { sphere = { centre = [3, 0, 0], radius = 2 } }]\nt.sphere = { centre = [0, 0, 0], radius = 1 }",
+                -2.0,
+            ),
+            (
+                "s.difference = [{ sphere = { centre = [3, 0, 0], radius = 2 } }, { sphere = { centre = [3, 0, 0], radius = 1 } }]",
+                1.0,
+            ),
         ] {
             let shape = shape(toml).unwrap();
             assert!((shape.distance(p) - expected).abs() < 1e-12, "{toml}: {}", shape.distance(p));

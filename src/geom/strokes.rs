@@ -28,10 +28,7 @@ impl Strokes {
                 segments.chunks(GROUP).map(<[_]>::to_vec).collect::<Vec<_>>()
             })
             .map(|group| {
-                let bounds = group
-                    .iter()
-                    .flatten()
-                    .fold(Bounds::EMPTY, |b, &p| b.union(Bounds { min: p, max: p }));
+                let bounds = group.iter().flatten().fold(Bounds::EMPTY, |b, &p| b.union(Bounds { min: p, max: p }));
                 (bounds, group)
             })
             .collect();
@@ -52,10 +49,7 @@ impl Strokes {
             if to_box >= nearest {
                 return nearest;
             }
-            group
-                .iter()
-                .map(|&[a, b]| segment_distance(p, a, b))
-                .fold(nearest, f64::min)
+            group.iter().map(|&[a, b]| segment_distance(p, a, b)).fold(nearest, f64::min)
         })
     }
 }

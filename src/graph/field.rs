@@ -26,7 +26,6 @@ pub struct FieldTable {
     /// How far apart the values of neighbours along x, y and z are; 0 where nothing changes.
     pub(super) strides: [usize; 3],
     values: Vec<[u32; 2]>,
-    fraction: u32,
 }
 
 /// Values of a field before they are rounded to integers: their bounds set the fractional bits.
@@ -38,11 +37,7 @@ pub(super) struct FieldSamples {
 
 impl FieldSamples {
     /// Evaluates `value` at every node of `window`; `varies` says along which axes it can change.
-    pub fn new(
-        window: &Window,
-        varies: [bool; 3],
-        value: impl Fn(DVec3) -> FieldValue + Sync,
-    ) -> Self {
+    pub fn new(window: &Window, varies: [bool; 3], value: impl Fn(DVec3) -> FieldValue + Sync) -> Self {
         let size = [0, 1, 2].map(|axis| if varies[axis] { window.size[axis] as usize } else { 1 });
         let strides = [1, size[0], size[0] * size[1]];
         let values = (0..size[0] * size[1] * size[2])
@@ -50,16 +45,10 @@ impl FieldSamples {
             .map(|i| {
                 let at = [i % size[0], i / strides[1] % size[1], i / strides[2]];
                 let FieldValue { sum, factor } = value(window.position(at.map(|c| c as u32)));
-                FieldValue {
-                    sum: sum.max(0.0),
-                    factor: factor.max(LEAST_FACTOR),
-                }
+                FieldValue { sum: sum.max(0.0), factor: factor.max(LEAST_FACTOR) }
             })
             .collect();
-        Self {
-            strides: [0, 1, 2].map(|axis| if varies[axis] { strides[axis] } else { 0 }),
-            values,
-        }
+        Self { strides: [0, 1, 2].map(|axis| if varies[axis] { strides[axis] } else { 0 }), values }
     }
 
     /// The least and largest sum and factor.
@@ -67,14 +56,8 @@ impl FieldSamples {
         let first = self.values[0];
         self.values.iter().fold((first, first), |(low, high), v| {
             (
-                FieldValue {
-                    sum: low.sum.min(v.sum),
-                    factor: low.factor.min(v.factor),
-                },
-                FieldValue {
-                    sum: high.sum.max(v.sum),
-                    factor: high.factor.max(v.factor),
-                },
+                FieldValue { sum: low.sum.min(v.sum), factor: low.factor.min(v.factor) },
+                FieldValue { sum: high.sum.max(v.sum), factor: high.factor.max(v.factor) },
             )
         })
     }
@@ -83,12 +66,7 @@ impl FieldSamples {
     pub fn into_table(self, fraction: u32) -> FieldTable {
         FieldTable {
             strides: self.strides,
-            values: self
-                .values
-                .iter()
-                .map(|v| [fixed(v.sum, fraction), fixed(v.factor, FACTOR_FRACTION)])
-                .collect(),
-            fraction,
+            values: self.values.iter().map(|v| [fixed(v.sum, fraction), fixed(v.factor, FACTOR_FRACTION)]).collect(),
         }
     }
 }
@@ -103,11 +81,5 @@ impl FieldTable {
         let sum = u64::from(sum_a) + u64::from(sum_b);
         // Halved, since both are sums over two ends.
         (((u64::from(random) * factor) >> (FACTOR_FRACTION + 1)) + ((sum * length) >> 13)) as u32
-    }
-
-    /// Fractional bits of the weights that [`FieldTable::weight`] returns.
-    #[must_use]
-    pub fn fraction(&self) -> u32 {
-        self.fraction
     }
 }

@@ -3,17 +3,12 @@
 use super::field::{FieldSamples, LEAST_FACTOR};
 use super::weights::{fixed, length};
 use super::{
-    Edge, FieldTable, FieldValue, Graph, Mask, Neighbours, Node, WeightError, WeightRange, WeightTable,
-    Weights,
+    Edge, FieldTable, FieldValue, Graph, Mask, Neighbours, Node, WeightError, WeightRange, WeightTable, Weights,
 };
 use crate::math::{DVec3, Stream, mix};
 
 /// Odd multipliers that tell coordinates apart in an edge's key: fractional parts of the square roots of 2, 3, 5.
-const AXIS_KEYS: [u64; 3] = [
-    0x6a09_e667_f3bc_c909,
-    0xbb67_ae85_84ca_a73b,
-    0x3c6e_f372_fe94_f82b,
-];
+const AXIS_KEYS: [u64; 3] = [0x6a09_e667_f3bc_c909, 0xbb67_ae85_84ca_a73b, 0x3c6e_f372_fe94_f82b];
 
 /// In space, fronts of lattices with this many nodes are worth sharing among threads (benches/README.md).
 const WIDE: usize = 3_000_000;
@@ -82,11 +77,7 @@ impl Window {
         if dimensions == 2 {
             origin[2] = 0;
         }
-        Ok(Self {
-            spacing,
-            origin,
-            size: size.map(|s| s as u32),
-        })
+        Ok(Self { spacing, origin, size: size.map(|s| s as u32) })
     }
 
     /// How many nodes the window holds.
@@ -98,8 +89,7 @@ impl Window {
     /// Where the node with coordinates `at` within the window is, in scene units.
     #[must_use]
     pub fn position(&self, at: [u32; 3]) -> DVec3 {
-        let [x, y, z] =
-            [0, 1, 2].map(|axis| (f64::from(self.origin[axis]) + f64::from(at[axis])) * self.spacing);
+        let [x, y, z] = [0, 1, 2].map(|axis| (f64::from(self.origin[axis]) + f64::from(at[axis])) * self.spacing);
         DVec3::new(x, y, z)
     }
 
@@ -157,7 +147,7 @@ impl<const N: usize> Lattice<N> {
     };
 
     /// A lattice whose random weights come from `stream`. `field`, if any, says along which axes it varies and its
-    /// value at a position; `mask` has one bit a cell ([`Lattice::cell_of`]).
+    /// value at a position; `mask` has one bit a cell ([`Graph::cell`]).
     ///
     /// # Errors
     /// [`LatticeError::Weights`] when weights are out of range.
@@ -170,18 +160,11 @@ impl<const N: usize> Lattice<N> {
     ) -> Result<Self, LatticeError> {
         let bits = window.size.map(|s| 32 - (s - 1).leading_zeros());
         let shift = [bits[0], bits[0] + bits[1]];
-        let strides = [
-            1,
-            window.size[0] as usize,
-            window.size[0] as usize * window.size[1] as usize,
-        ];
+        let strides = [1, window.size[0] as usize, window.size[0] as usize * window.size[1] as usize];
         let samples = field.map(|(varies, value)| FieldSamples::new(&window, varies, value));
         let (low, high) = samples.as_ref().map_or(
             {
-                let none = FieldValue {
-                    sum: 0.0,
-                    factor: 1.0,
-                };
+                let none = FieldValue { sum: 0.0, factor: 1.0 };
                 (none, none)
             },
             FieldSamples::bounds,
@@ -201,20 +184,12 @@ impl<const N: usize> Lattice<N> {
             field_step: [0; N],
             length: [0; N],
             mask,
-            range: WeightRange {
-                least: 1,
-                most: 1,
-                fraction,
-            },
+            range: WeightRange { least: 1, most: 1, fraction },
             table,
             field,
         };
         lattice.key = stream.key().wrapping_add(coordinate_key(window.origin));
-        let unit = [
-            1,
-            1_usize.checked_shl(shift[0]).unwrap_or(0),
-            1_usize.checked_shl(shift[1]).unwrap_or(0),
-        ];
+        let unit = [1, 1_usize.checked_shl(shift[0]).unwrap_or(0), 1_usize.checked_shl(shift[1]).unwrap_or(0)];
         for slot in 0..N {
             let step = Self::STEPS[slot];
             lattice.cell_step[slot] = dot(step, strides);
@@ -254,11 +229,7 @@ impl<const N: usize> Lattice<N> {
         } else {
             (f64::from(least), f64::from(most))
         };
-        WeightRange {
-            least: (least as u32).max(1),
-            most: most as u32,
-            fraction,
-        }
+        WeightRange { least: (least as u32).max(1), most: most as u32, fraction }
     }
 
     /// The window onto the infinite lattice.
@@ -339,11 +310,7 @@ impl<const N: usize> Lattice<N> {
             return [node.0 & ((1 << sx) - 1), (u64::from(node.0) >> sx) as u32, 0];
         }
         let wide = u64::from(node.0);
-        [
-            (wide & ((1 << sx) - 1)) as u32,
-            (wide >> sx & ((1 << (sy - sx)) - 1)) as u32,
-            (wide >> sy) as u32,
-        ]
+        [(wide & ((1 << sx) - 1)) as u32, (wide >> sx & ((1 << (sy - sx)) - 1)) as u32, (wide >> sy) as u32]
     }
 
     #[inline(always)]
@@ -402,16 +369,12 @@ impl<const N: usize> Lattice<N> {
 
 /// The key of lattice coordinates or of a step between them.
 fn coordinate_key(at: [i32; 3]) -> u64 {
-    at.iter().zip(AXIS_KEYS).fold(0, |sum: u64, (&c, key)| {
-        sum.wrapping_add((i64::from(c) as u64).wrapping_mul(key))
-    })
+    at.iter().zip(AXIS_KEYS).fold(0, |sum: u64, (&c, key)| sum.wrapping_add((i64::from(c) as u64).wrapping_mul(key)))
 }
 
 /// How far a step goes in an array with these strides; wraps for negative steps.
 fn dot(step: [i32; 3], strides: [usize; 3]) -> usize {
-    step.iter().zip(strides).fold(0, |sum, (&d, stride)| {
-        sum.wrapping_add((d as isize as usize).wrapping_mul(stride))
-    })
+    step.iter().zip(strides).fold(0, |sum, (&d, stride)| sum.wrapping_add((d as isize as usize).wrapping_mul(stride)))
 }
 
 /// A hash whose top bits depend on all bits of the key: two rounds of xor-shift and multiply.

@@ -19,11 +19,7 @@ impl Mask {
             *last &= (1 << (cells % 64)) - 1;
         }
         let blocked = words.iter().map(|w| w.count_ones() as usize).sum();
-        Self {
-            words,
-            cells,
-            blocked,
-        }
+        Self { words, cells, blocked }
     }
 
     /// Is `cell` forbidden?

@@ -12,8 +12,8 @@ mod neighbours;
 mod weights;
 
 pub use cost_field::{CostField, Measure};
-pub use field_spec::{FieldSpec, FieldUse, HeightEnd, MeasureSpec};
 pub use field::{FieldTable, FieldValue};
+pub use field_spec::{FieldSpec, FieldUse, HeightEnd, MeasureSpec};
 pub use lattice::{Lattice, LatticeError, Window};
 pub use mask::Mask;
 pub use neighbours::Neighbours;

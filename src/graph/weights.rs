@@ -28,10 +28,7 @@ pub struct Weights {
 
 impl Default for Weights {
     fn default() -> Self {
-        Self {
-            max: 10.0,
-            alpha: 1.0,
-        }
+        Self { max: 10.0, alpha: 1.0 }
     }
 }
 
@@ -39,9 +36,7 @@ impl Default for Weights {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum WeightError {
     /// The largest weight is out of range.
-    #[error(
-        "an edge may weigh up to {largest:.3e}, which is more than {limit}: lower alpha, max or the cost fields"
-    )]
+    #[error("an edge may weigh up to {largest:.3e}, which is more than {limit}: lower alpha, max or the cost fields")]
     TooLarge {
         /// The largest weight an edge can have.
         largest: f64,
@@ -84,15 +79,10 @@ impl WeightTable {
     ///
     /// # Errors
     /// [`WeightError::TooLarge`] when weights leave less than four fractional bits.
-    pub fn new(
-        weights: Weights,
-        largest_factor: f64,
-        largest_sum: f64,
-    ) -> Result<Self, WeightError> {
+    pub fn new(weights: Weights, largest_factor: f64, largest_sum: f64) -> Result<Self, WeightError> {
         let largest = (power(weights.max, weights.alpha) * largest_factor + largest_sum) * length(2);
         let limit = 1_u32 << (WEIGHT_BITS - LEAST_FRACTION);
-        // Negated, so that a NaN fails too.
-        if !(largest < f64::from(limit)) {
+        if largest.is_nan() || largest >= f64::from(limit) {
             return Err(WeightError::TooLarge { largest, limit });
         }
         let mut fraction = FRACTION;
@@ -147,15 +137,16 @@ mod tests {
     fn tables_are_pinned() {
         let sum = |max, alpha| {
             let table = WeightTable::new(Weights { max, alpha }, 1.0, 0.0).unwrap();
-            table
-                .entries
-                .iter()
-                .flatten()
-                .fold(0_u64, |sum, &e| sum.rotate_left(5) ^ u64::from(e))
+            table.entries.iter().flatten().fold(0_u64, |sum, &e| sum.rotate_left(5) ^ u64::from(e))
         };
         assert_eq!(
             [sum(10.0, 0.3), sum(10.0, 1.0), sum(10.0, 3.0), sum(11.0, 1.0)],
-            [5_251_410_454_428_352_591, 1_940_053_902_947_470_439, 7_240_820_820_853_094_106, 3_628_366_266_119_417_321]
+            [
+                5_251_410_454_428_352_591,
+                1_940_053_902_947_470_439,
+                7_240_820_820_853_094_106,
+                3_628_366_266_119_417_321
+            ]
         );
     }
 

@@ -115,9 +115,7 @@ fn cost_contours<const N: usize>(step: &Step, plan: &Plan<'_, Lattice<N>>) -> Ve
     let at = |x: u32, y: u32| if up == 1 { [x, y, 0] } else { [x, depth, y] };
     let nodes = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
     let costs = plan.costs(nodes.map(|(x, y)| lattice.node(at(x, y))).filter(|&n| lattice.is_open(n)));
-    let cost = |x: u32, y: u32| {
-        costs[lattice.cell(lattice.node(at(x, y)))].map_or(f64::NAN, |cost| range.real(cost))
-    };
+    let cost = |x: u32, y: u32| costs[lattice.cell(lattice.node(at(x, y)))].map_or(f64::NAN, |cost| range.real(cost));
     let most = costs.iter().flatten().max().map_or(0.0, |&cost| range.real(cost));
     let place = |x: f64, y: f64| {
         let low = window.position(at(0, 0));

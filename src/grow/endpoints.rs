@@ -59,9 +59,9 @@ impl Placement {
             Self::At(points) => points
                 .iter()
                 .map(|&p| {
-                    lattice.nearest(p).ok_or_else(|| {
-                        format!("the endpoint at {p} is outside the space or where nodes are forbidden")
-                    })
+                    lattice
+                        .nearest(p)
+                        .ok_or_else(|| format!("the endpoint at {p} is outside the space or where nodes are forbidden"))
                 })
                 .collect(),
             Self::Random { count, inside, apart, stream } => {

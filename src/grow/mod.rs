@@ -11,7 +11,5 @@ mod step;
 pub use construction::{Mark, MarkKind};
 pub use endpoints::{Endpoints, Placement};
 pub use space::Space;
-pub use spec::{
-    EndpointSpec, FromSpec, LatticeSpec, NodesSpec, SpaceSpec, StepSpec, Unreached,
-};
+pub use spec::{EndpointSpec, FromSpec, LatticeSpec, NodesSpec, SpaceSpec, StepSpec, Unreached};
 pub use step::{GrowError, Grown, Source, Step};

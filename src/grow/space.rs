@@ -69,9 +69,7 @@ impl Space {
     pub fn bytes_needed(&self) -> u64 {
         let nodes = self.window.nodes();
         let varies = self.varies();
-        let table: u64 = (0..3)
-            .map(|axis| if varies[axis] { u64::from(self.window.size[axis]) } else { 1 })
-            .product();
+        let table: u64 = (0..3).map(|axis| if varies[axis] { u64::from(self.window.size[axis]) } else { 1 }).product();
         // A field table has 8 bytes an entry, made from samples of 16.
         let fields = if self.fields.is_empty() { 0 } else { table * 24 };
         let mask = if self.is_masked() { nodes / 8 } else { 0 };
@@ -88,8 +86,7 @@ impl Space {
         if mask.as_ref().is_some_and(|mask| mask.open() == 0) {
             return Err(LatticeError::Empty);
         }
-        let field = (!self.fields.is_empty())
-            .then(|| (self.varies(), |p| CostField::combine(&self.fields, p)));
+        let field = (!self.fields.is_empty()).then(|| (self.varies(), |p| CostField::combine(&self.fields, p)));
         Lattice::new(self.window, &Stream::new(seed, &format!("space/{}", self.stream)), self.weights, field, mask)
     }
 

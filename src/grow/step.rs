@@ -106,16 +106,9 @@ impl Step {
         }
     }
 
-    fn grow_in<const N: usize>(
-        &self,
-        seed: u64,
-        show: &[MarkKind],
-        progress: &Progress,
-    ) -> Result<Grown, GrowError> {
-        let in_space = |key: &str, message: String| GrowError::Scene {
-            place: format!("space.{}{key}", self.space_name),
-            message,
-        };
+    fn grow_in<const N: usize>(&self, seed: u64, show: &[MarkKind], progress: &Progress) -> Result<Grown, GrowError> {
+        let in_space =
+            |key: &str, message: String| GrowError::Scene { place: format!("space.{}{key}", self.space_name), message };
         let lattice: Lattice<N> = self.space.lattice(seed).map_err(|error| {
             let key = if matches!(error, LatticeError::Weights(_)) { ".weights" } else { ".nodes" };
             in_space(key, error.to_string())
@@ -142,8 +135,7 @@ impl Step {
             nodes: lattice.open_nodes(),
             edges: lattice.count_edges(),
             settled: plan.settled() as u64,
-            marks: construction(self, &plan, &nodes, show)
-                .map_err(|message| in_space(".nodes", message))?,
+            marks: construction(self, &plan, &nodes, show).map_err(|message| in_space(".nodes", message))?,
             skeleton,
             dropped,
         })
@@ -206,10 +198,9 @@ impl Step {
             });
             skeleton.add_path(&mut known, set.class, path);
         }
-        self.width.apply(&mut skeleton).map_err(|message| GrowError::Scene {
-            place: format!("grow.{}.width", self.name),
-            message,
-        })?;
+        self.width
+            .apply(&mut skeleton)
+            .map_err(|message| GrowError::Scene { place: format!("grow.{}.width", self.name), message })?;
         if self.smooth > 0.0 {
             smooth(&mut skeleton, self.smooth);
             skeleton = bend(&skeleton);

@@ -3,7 +3,6 @@
 //!
 //! Later stages need never handle platform differences: everything here gives the same bits everywhere.
 
-
 mod name;
 mod power;
 mod progress;

@@ -64,10 +64,7 @@ pub struct Ref<T> {
 impl<T> Ref<T> {
     /// A reference to the `T` called `name`.
     pub fn new(name: impl Into<String>) -> Self {
-        Self {
-            name: name.into(),
-            kind: PhantomData,
-        }
+        Self { name: name.into(), kind: PhantomData }
     }
 }
 
@@ -95,11 +92,7 @@ impl Colour {
     pub fn from_srgb(rgb: [u8; 3]) -> Self {
         Self(rgb.map(|byte| {
             let c = f64::from(byte) / 255.0;
-            if c <= 0.04045 {
-                c / 12.92
-            } else {
-                crate::math::power((c + 0.055) / 1.055, 2.4)
-            }
+            if c <= 0.04045 { c / 12.92 } else { crate::math::power((c + 0.055) / 1.055, 2.4) }
         }))
     }
 
@@ -107,11 +100,7 @@ impl Colour {
     #[must_use]
     pub fn to_srgb(linear: f64) -> u8 {
         let c = linear.clamp(0.0, 1.0);
-        let encoded = if c <= 0.003_130_8 {
-            c * 12.92
-        } else {
-            1.055 * crate::math::power(c, 1.0 / 2.4) - 0.055
-        };
+        let encoded = if c <= 0.003_130_8 { c * 12.92 } else { 1.055 * crate::math::power(c, 1.0 / 2.4) - 0.055 };
         libm::floor(encoded * 255.0 + 0.5) as u8
     }
 
@@ -126,9 +115,7 @@ impl<'de> Deserialize<'de> for Colour {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let wrong = "a colour is [r, g, b] or \"#rrggbb\"";
         match serde_json::Value::deserialize(deserializer)? {
-            serde_json::Value::String(text) => {
-                Self::from_hex(&text).ok_or_else(|| D::Error::custom(wrong))
-            }
+            serde_json::Value::String(text) => Self::from_hex(&text).ok_or_else(|| D::Error::custom(wrong)),
             value => serde_json::from_value(value).map(Self).map_err(|_| D::Error::custom(wrong)),
         }
     }

@@ -20,10 +20,7 @@ pub struct Progress {
 impl Progress {
     /// A handle that stops when `stop` becomes true and tells `listener` the stage and its share done (0 to 1).
     pub fn new(stop: Arc<AtomicBool>, listener: impl FnMut(&str, f64) + Send + 'static) -> Self {
-        Self {
-            stop,
-            listener: Some(Arc::new(Mutex::new(listener))),
-        }
+        Self { stop, listener: Some(Arc::new(Mutex::new(listener))) }
     }
 
     /// Says that `share` (0 to 1) of `stage` is done.
@@ -42,18 +39,12 @@ impl Progress {
     /// # Errors
     /// [`Cancelled`] when the work should stop.
     pub fn check(&self) -> Result<(), Cancelled> {
-        if self.stop.load(Ordering::Relaxed) {
-            Err(Cancelled)
-        } else {
-            Ok(())
-        }
+        if self.stop.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
     }
 }
 
 impl std::fmt::Debug for Progress {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Progress")
-            .field("stop", &self.stop)
-            .finish_non_exhaustive()
+        f.debug_struct("Progress").field("stop", &self.stop).finish_non_exhaustive()
     }
 }

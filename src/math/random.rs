@@ -42,13 +42,10 @@ impl Stream {
     #[must_use]
     pub fn new(seed: u64, name: &str) -> Self {
         // FNV-1a: short names, and a fixed value on every platform.
-        let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
-            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-        });
-        Self {
-            key: mix(mix(seed.wrapping_add(GOLDEN)) ^ mix(hash)),
-            next: 0,
-        }
+        let hash = name
+            .bytes()
+            .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3));
+        Self { key: mix(mix(seed.wrapping_add(GOLDEN)) ^ mix(hash)), next: 0 }
     }
 
     /// What tells this stream from all others.
@@ -102,10 +99,7 @@ mod tests {
             bins[(stream.random::<f64>() * 16.0) as usize] += 1;
         }
         let expected = f64::from(n) / 16.0;
-        let chi2: f64 = bins
-            .iter()
-            .map(|&b| (f64::from(b) - expected) * (f64::from(b) - expected) / expected)
-            .sum();
+        let chi2: f64 = bins.iter().map(|&b| (f64::from(b) - expected) * (f64::from(b) - expected) / expected).sum();
         assert!(chi2 < 37.7, "chi-squared {chi2} over 15 degrees of freedom");
     }
 }

@@ -49,25 +49,13 @@ impl Material {
     /// A matt material of this colour.
     #[must_use]
     pub fn matt(colour: Colour) -> Self {
-        Self {
-            colour,
-            ambient: ambient(),
-            diffuse: diffuse(),
-            emission: 0.0,
-            specular: 0.0,
-            roughness: roughness(),
-        }
+        Self { colour, ambient: ambient(), diffuse: diffuse(), emission: 0.0, specular: 0.0, roughness: roughness() }
     }
 
     /// Drawing ink: its own colour under every light.
     #[must_use]
     pub fn ink(colour: Colour) -> Self {
-        Self {
-            ambient: 0.0,
-            diffuse: 0.0,
-            emission: 1.0,
-            ..Self::matt(colour)
-        }
+        Self { ambient: 0.0, diffuse: 0.0, emission: 1.0, ..Self::matt(colour) }
     }
 }
 

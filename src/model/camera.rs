@@ -29,14 +29,7 @@ pub struct CameraSpec {
 
 impl Default for CameraSpec {
     fn default() -> Self {
-        Self {
-            at: None,
-            look_at: None,
-            turn: Degrees(0.0),
-            rise: Degrees(4.0),
-            angle: Degrees(30.0),
-            room: 0.0,
-        }
+        Self { at: None, look_at: None, turn: Degrees(0.0), rise: Degrees(4.0), angle: Degrees(30.0), room: 0.0 }
     }
 }
 
@@ -109,11 +102,7 @@ impl Camera {
             return Err("a camera with `look_at` needs `at` too".to_owned());
         }
         let (turn, rise) = (spec.turn.radians(), spec.rise.radians());
-        let back = DVec3::new(
-            libm::sin(turn) * libm::cos(rise),
-            -libm::cos(turn) * libm::cos(rise),
-            libm::sin(rise),
-        );
+        let back = DVec3::new(libm::sin(turn) * libm::cos(rise), -libm::cos(turn) * libm::cos(rise), libm::sin(rise));
         let right = DVec3::new(libm::cos(turn), libm::sin(turn), 0.0);
         let up = back.cross(right);
         let grow = 1.0 + MARGIN + spec.room;
@@ -151,12 +140,7 @@ impl Camera {
                 .map(|(x, tan)| p.dot(back) + (x.abs() + radius * libm::sqrt(1.0 + tan * tan)) / tan)
                 .fold(distance, f64::max)
         });
-        Ok(Self {
-            at: look_at + back * distance,
-            look_at,
-            projection: Projection::Perspective { angle },
-            aspect,
-        })
+        Ok(Self { at: look_at + back * distance, look_at, projection: Projection::Perspective { angle }, aspect })
     }
 
     /// Unit vectors to the right, up and forwards of the picture.
@@ -178,12 +162,7 @@ impl Camera {
             Projection::Perspective { .. } if depth <= 0.0 => return None,
             Projection::Perspective { angle } => 0.5 / (depth * libm::tan(angle * 0.5)),
         };
-        Some(Projected {
-            x: 0.5 + d.dot(right) * scale,
-            y: 0.5 - d.dot(up) * scale * self.aspect,
-            scale,
-            depth,
-        })
+        Some(Projected { x: 0.5 + d.dot(right) * scale, y: 0.5 - d.dot(up) * scale * self.aspect, scale, depth })
     }
 }
 
@@ -193,7 +172,8 @@ mod tests {
 
     #[test]
     fn fits_what_there_is_to_see() {
-        let balls = [(DVec3::new(0.0, 0.0, 1.0), 0.5), (DVec3::new(3.0, -1.0, 8.0), 0.1), (DVec3::new(-2.0, 1.0, 4.0), 0.2)];
+        let balls =
+            [(DVec3::new(0.0, 0.0, 1.0), 0.5), (DVec3::new(3.0, -1.0, 8.0), 0.1), (DVec3::new(-2.0, 1.0, 4.0), 0.2)];
         for angle in [0.0, 30.0, 80.0] {
             for aspect in [0.5, 1.0, 2.0] {
                 let spec = CameraSpec { angle: Degrees(angle), turn: Degrees(25.0), ..CameraSpec::default() };

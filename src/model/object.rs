@@ -39,10 +39,7 @@ impl Object {
     /// A box around it in the world.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
-        self.balls
-            .iter()
-            .map(|b| Bounds::of_ball(self.foot + b.centre, b.radius))
-            .fold(Bounds::EMPTY, Bounds::union)
+        self.balls.iter().map(|b| Bounds::of_ball(self.foot + b.centre, b.radius)).fold(Bounds::EMPTY, Bounds::union)
     }
 
     /// How far it reaches above its foot.

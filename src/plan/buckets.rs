@@ -27,11 +27,7 @@ pub(super) struct Taken {
 impl Buckets {
     /// `count` buckets, a power of two.
     pub fn new(count: usize) -> Self {
-        Self {
-            cursors: vec![EMPTY; count],
-            pool: vec![0; CHUNK],
-            free: Vec::new(),
-        }
+        Self { cursors: vec![EMPTY; count], pool: vec![0; CHUNK], free: Vec::new() }
     }
 
     /// Puts `node` in `bucket` if `wanted`, without a branch on that.
@@ -68,10 +64,7 @@ impl Buckets {
     pub fn take(&mut self, bucket: usize) -> Taken {
         let cursor = std::mem::replace(&mut self.cursors[bucket], EMPTY);
         let chunk = cursor & !(CHUNK as u32 - 1);
-        Taken {
-            chunk,
-            len: cursor - chunk,
-        }
+        Taken { chunk, len: cursor - chunk }
     }
 
     /// The next nodes of a taken bucket, or nothing when it has no more.
@@ -85,10 +78,7 @@ impl Buckets {
         places.copy_from_slice(&self.pool[start..start + CHUNK]);
         self.free.push(taken.chunk);
         let len = taken.len as usize;
-        *taken = Taken {
-            chunk: places[0],
-            len: CHUNK as u32,
-        };
+        *taken = Taken { chunk: places[0], len: CHUNK as u32 };
         Some((places, len))
     }
 

@@ -24,9 +24,7 @@ const FAR: u32 = 1 << 30;
 
 impl Cells {
     pub fn new(len: usize) -> Self {
-        Self {
-            cells: zeroed_slice_box(len),
-        }
+        Self { cells: zeroed_slice_box(len) }
     }
 
     #[inline(always)]

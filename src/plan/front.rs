@@ -25,14 +25,9 @@ impl Width {
         // One bucket for the current one and one for rounding.
         let count = ((range.most >> log) + 2).next_power_of_two();
         if count > MOST_BUCKETS {
-            return Err(PlanError::TooWide {
-                ratio: range.most / range.least,
-            });
+            return Err(PlanError::TooWide { ratio: range.most / range.least });
         }
-        Ok(Self {
-            shift: log + slot_bits,
-            wrap: count - 1,
-        })
+        Ok(Self { shift: log + slot_bits, wrap: count - 1 })
     }
 
     /// Number of buckets.
@@ -57,6 +52,15 @@ impl Width {
     }
 }
 
+/// What a search works on.
+pub(super) struct Front<'a, G> {
+    pub graph: &'a G,
+    pub cells: &'a Cells,
+    pub width: Width,
+    /// The cell of a generator: the least cost there is.
+    pub start: u32,
+}
+
 /// The nodes that a search still waits for.
 pub(super) struct Wanted(Option<Vec<Node>>);
 
@@ -66,64 +70,60 @@ impl Wanted {
     }
 
     /// Are all settled, now that everything below `base` is?
-    pub fn is_done<G: Graph>(&mut self, graph: &G, cells: &Cells, width: Width, base: u32) -> bool {
+    pub fn is_done<G: Graph>(&mut self, front: &Front<'_, G>, base: u32) -> bool {
         let Some(wanted) = &mut self.0 else { return false };
         let is_settled = |node: &Node| {
-            let cell = cells.get(graph.cell(*node));
+            let cell = front.cells.get(front.graph.cell(*node));
             cell != 0 && (cell.wrapping_sub(base) as i32) < 0
         };
         while wanted.pop_if(|node| is_settled(node)).is_some() {}
         // Costs are compared modulo 2^32, so nothing may stay on the list for long once it is settled.
-        if base & SWEEP < 1 << width.shift {
+        if base & SWEEP < 1 << front.width.shift {
             wanted.retain(|node| !is_settled(node));
         }
         wanted.is_empty()
     }
 }
 
-/// Settles the nodes of a chunk that still belong to the bucket at `base` and relaxes their edges, in two passes
-/// without unforeseeable branches; returns how many were settled. `SHARED` allows other threads to do the same.
-#[inline(always)]
-pub(super) fn advance<G: Graph, const SHARED: bool>(
-    graph: &G,
-    cells: &Cells,
-    width: Width,
-    base: u32,
-    nodes: &[u32],
-    buckets: &mut Buckets,
-) -> usize {
-    let current = width.bucket(base);
-    let within = (1 << width.shift) - 1;
-    let mut live = [(Node(0), 0_usize, 0_u32); CHUNK];
-    let mut lives = 0;
-    for &node in nodes {
-        let node = Node(node);
-        let cell = graph.cell(node);
-        let value = cells.get(cell);
-        live[lives] = (node, cell, value);
-        // The others were settled earlier.
-        lives += usize::from(width.bucket(value) == current);
-    }
-    for &(_, cell, _) in &live[..lives] {
-        graph.ahead(cell, |cell| cells.prefetch(cell));
-    }
-    let mut relax = |node: Node, value: u32, is_shared: bool| {
-        let cost = value & !slot_mask::<G>();
-        graph.edges(node, |edge| {
-            let new = cost.wrapping_add(edge.weight << G::SLOT_BITS) | (edge.back + 1);
-            let old = if is_shared { cells.lower_shared(edge.cell, new) } else { cells.lower(edge.cell, new) };
-            // A node is pushed when it comes down from a higher bucket.
-            let above = old.wrapping_sub(new & !within) as i32 > within as i32;
-            buckets.push_if(above, width.bucket(new), edge.node);
-        });
-    };
-    for &(node, _, value) in &live[..lives] {
-        // Cells that only this thread writes need no care.
-        if SHARED && !graph.is_inner(node) {
-            relax(node, value, true);
-        } else {
-            relax(node, value, false);
+impl<G: Graph> Front<'_, G> {
+    /// Settles the nodes of a chunk that still belong to the bucket at `base` and relaxes their edges, in two passes
+    /// without unforeseeable branches; returns how many were settled. `SHARED` allows other threads to do the same.
+    #[inline(always)]
+    pub fn advance<const SHARED: bool>(&self, base: u32, nodes: &[u32], buckets: &mut Buckets) -> usize {
+        let Self { graph, cells, width, .. } = *self;
+        let current = width.bucket(base);
+        let within = (1 << width.shift) - 1;
+        let mut live = [(Node(0), 0_usize, 0_u32); CHUNK];
+        let mut lives = 0;
+        for &node in nodes {
+            let node = Node(node);
+            let cell = graph.cell(node);
+            let value = cells.get(cell);
+            live[lives] = (node, cell, value);
+            // The others were settled earlier.
+            lives += usize::from(width.bucket(value) == current);
         }
+        for &(_, cell, _) in &live[..lives] {
+            graph.ahead(cell, |cell| cells.prefetch(cell));
+        }
+        let mut relax = |node: Node, value: u32, is_shared: bool| {
+            let cost = value & !slot_mask::<G>();
+            graph.edges(node, |edge| {
+                let new = cost.wrapping_add(edge.weight << G::SLOT_BITS) | (edge.back + 1);
+                let old = if is_shared { cells.lower_shared(edge.cell, new) } else { cells.lower(edge.cell, new) };
+                // A node is pushed when it comes down from a higher bucket.
+                let above = old.wrapping_sub(new & !within) as i32 > within as i32;
+                buckets.push_if(above, width.bucket(new), edge.node);
+            });
+        };
+        for &(node, _, value) in &live[..lives] {
+            // Cells that only this thread writes need no care.
+            if SHARED && !graph.is_inner(node) {
+                relax(node, value, true);
+            } else {
+                relax(node, value, false);
+            }
+        }
+        lives
     }
-    lives
 }

@@ -2,7 +2,7 @@
 
 use super::buckets::Buckets;
 use super::cells::Cells;
-use super::front::{MOST_BUCKETS, Wanted, Width, advance};
+use super::front::{Front, MOST_BUCKETS, Wanted, Width};
 use super::shared;
 use super::tree::Plan;
 use crate::graph::{Graph, Node};
@@ -98,24 +98,23 @@ pub(super) fn plan_on<'g, G: Graph>(
         Goal::Everything => None,
         Goal::Nodes(nodes) => Some(nodes),
     };
+    let front = Front { graph, cells: &cells, width, start };
     let settled = if threads > 1 {
-        shared::run(graph, &cells, width, start, buckets, wanted, threads, progress)?
+        shared::run(front, buckets, wanted, threads, progress)?
     } else {
-        run_alone(graph, &cells, width, start, buckets, Wanted::new(wanted), progress)?
+        run_alone(&front, buckets, Wanted::new(wanted), progress)?
     };
     Ok(Plan::new(graph, cells, settled))
 }
 
 /// The search on one thread; returns how many nodes were settled.
 fn run_alone<G: Graph>(
-    graph: &G,
-    cells: &Cells,
-    width: Width,
-    start: u32,
+    front: &Front<'_, G>,
     mut buckets: Buckets,
     mut wanted: Wanted,
     progress: &Progress,
 ) -> Result<usize, Cancelled> {
+    let Front { graph, cells, width, start } = *front;
     let mut settled = 0;
     let mut base = width.base(start);
     // Nothing waits once a whole round of buckets was empty.
@@ -128,10 +127,10 @@ fn run_alone<G: Graph>(
             for &node in buckets.upcoming(&taken) {
                 cells.prefetch(graph.cell(Node(node)));
             }
-            settled += advance::<G, false>(graph, cells, width, base, &places[1..len], &mut buckets);
+            settled += front.advance::<false>(base, &places[1..len], &mut buckets);
         }
         base = width.next(base);
-        if idle >= width.count() || wanted.is_done(graph, cells, width, base) {
+        if idle >= width.count() || wanted.is_done(front, base) {
             break;
         }
         if turn.is_multiple_of(1024) {

@@ -13,13 +13,13 @@ use crate::math::{DVec3, Progress, Stream};
 type Field = ([bool; 3], fn(DVec3) -> FieldValue);
 
 fn lattice<const N: usize>(size: [u32; 3], seed: u64, alpha: f64, field: bool, holes: bool) -> Lattice<N> {
-    let window = Window { spacing: 1.0, origin: [-3, 5, -7], size: if N == 4 || N == 8 { [size[0], size[1], 1] } else { size } };
-    let field: Option<Field> = field.then_some(([true, false, true], |p| FieldValue {
-        sum: p.x.abs() * 0.7,
-        factor: 0.5 + p.z.abs() * 0.1,
-    }));
+    let window =
+        Window { spacing: 1.0, origin: [-3, 5, -7], size: if N == 4 || N == 8 { [size[0], size[1], 1] } else { size } };
+    let field: Option<Field> =
+        field.then_some(([true, false, true], |p| FieldValue { sum: p.x.abs() * 0.7, factor: 0.5 + p.z.abs() * 0.1 }));
     let mask = holes.then(|| {
-        let words = (0..window.nodes().div_ceil(64)).map(|w| crate::math::mix(seed ^ w) & crate::math::mix(seed ^ !w) & !1);
+        let words =
+            (0..window.nodes().div_ceil(64)).map(|w| crate::math::mix(seed ^ w) & crate::math::mix(seed ^ !w) & !1);
         Mask::from_words(words.collect(), window.nodes() as usize)
     });
     Lattice::new(window, &Stream::new(seed, "test"), Weights { max: 10.0, alpha }, field, mask).unwrap()
@@ -106,7 +106,8 @@ proptest! {
 fn costs_may_exceed_a_cell() {
     let window = Window { spacing: 1.0, origin: [0; 3], size: [3000, 2, 2] };
     let dear: Option<Field> = Some(([true, false, false], |_| FieldValue { sum: 60.0, factor: 1.0 }));
-    let lattice: Lattice<26> = Lattice::new(window, &Stream::new(1, "long"), Weights { max: 10.0, alpha: 1.0 }, dear, None).unwrap();
+    let lattice: Lattice<26> =
+        Lattice::new(window, &Stream::new(1, "long"), Weights { max: 10.0, alpha: 1.0 }, dear, None).unwrap();
     let (root, end) = (lattice.node([0, 0, 0]), lattice.node([2999, 1, 1]));
     let expected = textbook(&lattice, &[root]);
     assert!(expected[&end] > 1 << 29, "the test wants a wrap: {}", expected[&end]);
@@ -159,7 +160,8 @@ fn weights_are_independent() {
             }
         }
         let expected = f64::from(count) / 16.0;
-        let chi2: f64 = bins.iter().flatten().map(|&b| (f64::from(b) - expected) * (f64::from(b) - expected) / expected).sum();
+        let chi2: f64 =
+            bins.iter().flatten().map(|&b| (f64::from(b) - expected) * (f64::from(b) - expected) / expected).sum();
         assert!(chi2 < 45.0, "{step:?}: chi-squared {chi2} over 15 degrees of freedom");
     }
 }

@@ -5,8 +5,7 @@ use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::buckets::{Buckets, CHUNK};
-use super::cells::Cells;
-use super::front::{Wanted, Width, advance};
+use super::front::{Front, Wanted};
 use crate::graph::{Graph, Node};
 use crate::math::{Cancelled, Progress};
 
@@ -44,9 +43,7 @@ type Inbox = [Mutex<Vec<u32>>; 2];
 
 /// What the threads share.
 struct Shared<'a, G> {
-    graph: &'a G,
-    cells: &'a Cells,
-    width: Width,
+    front: Front<'a, G>,
     barrier: Barrier,
     inboxes: Vec<Inbox>,
     /// How many nodes each of three turns has.
@@ -58,24 +55,15 @@ struct Shared<'a, G> {
 
 /// Runs the search from what is in `buckets` on `threads` threads; returns how many nodes were settled.
 pub(super) fn run<G: Graph>(
-    graph: &G,
-    cells: &Cells,
-    width: Width,
-    start: u32,
+    front: Front<'_, G>,
     buckets: Buckets,
     wanted: Option<&[Node]>,
     threads: usize,
     progress: &Progress,
 ) -> Result<usize, Cancelled> {
     let shared = Shared {
-        graph,
-        cells,
-        width,
-        barrier: Barrier {
-            threads,
-            arrived: AtomicUsize::new(0),
-            turn: AtomicUsize::new(0),
-        },
+        front,
+        barrier: Barrier { threads, arrived: AtomicUsize::new(0), turn: AtomicUsize::new(0) },
         inboxes: (0..threads).map(|_| Inbox::default()).collect(),
         counts: Default::default(),
         stop: AtomicU32::new(NEVER),
@@ -83,11 +71,11 @@ pub(super) fn run<G: Graph>(
     };
     std::thread::scope(|scope| {
         for own in 1..threads {
-            let empty = Buckets::new(width.count());
             let shared = &shared;
-            scope.spawn(move || shared.work(own, start, empty, Wanted::new(wanted), None));
+            let empty = Buckets::new(shared.front.width.count());
+            scope.spawn(move || shared.work(own, empty, Wanted::new(wanted), None));
         }
-        shared.work(0, start, buckets, Wanted::new(wanted), Some(progress));
+        shared.work(0, buckets, Wanted::new(wanted), Some(progress));
     });
     if shared.stop.into_inner() != NEVER {
         return Err(Cancelled);
@@ -100,8 +88,9 @@ impl<G: Graph> Shared<'_, G> {
     ///
     /// Threads own slabs of the graph, so that they seldom touch each other's cells: a node is pushed by whoever
     /// reaches it, and sorted to its owner when its bucket is taken.
-    fn work(&self, own: usize, start: u32, mut buckets: Buckets, mut wanted: Wanted, progress: Option<&Progress>) {
-        let Self { graph, cells, width, .. } = *self;
+    fn work(&self, own: usize, mut buckets: Buckets, mut wanted: Wanted, progress: Option<&Progress>) {
+        let front = &self.front;
+        let Front { graph, cells, width, start } = *front;
         let mut base = width.base(start);
         let mut idle = 0;
         let mut sorted: Vec<Vec<u32>> = vec![Vec::new(); self.inboxes.len()];
@@ -115,7 +104,9 @@ impl<G: Graph> Shared<'_, G> {
                     sorted[graph.slab(Node(node)) as usize % self.inboxes.len()].push(node);
                 }
             }
-            for (owner, nodes) in sorted.iter_mut().enumerate().filter(|(owner, nodes)| *owner != own && !nodes.is_empty()) {
+            for (owner, nodes) in
+                sorted.iter_mut().enumerate().filter(|(owner, nodes)| *owner != own && !nodes.is_empty())
+            {
                 lock(&self.inboxes[owner][parity]).append(nodes);
             }
             if let Some(progress) = progress
@@ -133,7 +124,7 @@ impl<G: Graph> Shared<'_, G> {
             }
             idle = if count.load(Ordering::Relaxed) == 0 { idle + 1 } else { 0 };
             let is_over = idle >= width.count() || self.stop.load(Ordering::Relaxed) <= turn;
-            if is_over || wanted.is_done(graph, cells, width, base) {
+            if is_over || wanted.is_done(front, base) {
                 return;
             }
             sorted[own].append(&mut lock(&self.inboxes[own][parity]));
@@ -143,7 +134,7 @@ impl<G: Graph> Shared<'_, G> {
                 for &node in upcoming.next().unwrap_or_default() {
                     cells.prefetch(graph.cell(Node(node)));
                 }
-                settled += advance::<G, true>(graph, cells, width, base, nodes, &mut buckets);
+                settled += front.advance::<true>(base, nodes, &mut buckets);
             }
             sorted[own].clear();
             self.settled.fetch_add(settled, Ordering::Relaxed);

@@ -33,15 +33,9 @@ impl Grey {
         };
         let (x0, x1, fx) = place(u, self.width);
         let (y0, y1, fy) = place(v, self.height);
-        let pixel = |x: u32, y: u32| {
-            f64::from(self.values[y as usize * self.width as usize + x as usize])
-        };
+        let pixel = |x: u32, y: u32| f64::from(self.values[y as usize * self.width as usize + x as usize]);
         let mix = |a: f64, b: f64, t: f64| a * (1.0 - t) + b * t;
-        mix(
-            mix(pixel(x0, y0), pixel(x1, y0), fx),
-            mix(pixel(x0, y1), pixel(x1, y1), fx),
-            fy,
-        )
+        mix(mix(pixel(x0, y0), pixel(x1, y0), fx), mix(pixel(x0, y1), pixel(x1, y1), fx), fy)
     }
 }
 

@@ -72,7 +72,13 @@ impl Povray {
     ///
     /// # Errors
     /// [`PovrayError`].
-    pub fn render(&self, folder: &Path, scene: &str, picture: &str, progress: &Progress) -> Result<Rendered, PovrayError> {
+    pub fn render(
+        &self,
+        folder: &Path,
+        scene: &str,
+        picture: &str,
+        progress: &Progress,
+    ) -> Result<Rendered, PovrayError> {
         let [width, height] = self.size;
         let mut command = Command::new("povray");
         command
@@ -116,10 +122,7 @@ impl Povray {
             }
         };
         if !status.success() || !folder.join(picture).is_file() {
-            return Err(PovrayError::Failed {
-                status: status.to_string(),
-                words: last_words(&said),
-            });
+            return Err(PovrayError::Failed { status: status.to_string(), words: last_words(&said) });
         }
         let warnings = said.into_iter().filter(|line| line.contains("Warning")).collect();
         Ok(Rendered { warnings })

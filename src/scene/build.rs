@@ -81,8 +81,8 @@ pub fn model(scene: &Resolved, grown: &[Grown], size: [u32; 2]) -> Result<Model,
     let aspect = f64::from(size[0]) / f64::from(size[1]);
     let balls = objects.iter().flat_map(|o| o.balls.iter().map(|b| (o.foot + b.centre, b.radius)));
     let drawn = marks.iter().flat_map(|m| m.line.iter().map(|&p| (p, 0.0)));
-    let camera = Camera::new(&scene.camera, aspect, balls.chain(drawn))
-        .map_err(|message| scene.error("camera", message))?;
+    let camera =
+        Camera::new(&scene.camera, aspect, balls.chain(drawn)).map_err(|message| scene.error("camera", message))?;
     let mut model = Model {
         title: scene.title.clone(),
         is_flat: scene.is_flat,

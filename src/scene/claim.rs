@@ -78,7 +78,8 @@ impl Quantity {
             Self::Spread => m.spread,
             Self::Trunk => m.trunk,
             Self::Shared => with.map_or(0.0, |with| {
-                let ends = |s: &Skeleton| -> Vec<_> { s.paths.iter().map(|p| s.nodes[p.end as usize].position).collect() };
+                let ends =
+                    |s: &Skeleton| -> Vec<_> { s.paths.iter().map(|p| s.nodes[p.end as usize].position).collect() };
                 let (own, other) = (ends(skeleton), ends(with));
                 own.iter().filter(|p| other.contains(p)).count() as f64 / own.len().max(1) as f64
             }),

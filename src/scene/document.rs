@@ -107,13 +107,9 @@ fn default_size() -> [u32; 2] {
 pub(super) fn read(tree: &Entry, mistakes: &mut Vec<Mistake>) -> Option<Scene> {
     serde_path_to_error::deserialize(tree.to_json())
         .map_err(|error| {
-            let place = error.path().to_string().replace('[', "").replace(']', "");
+            let place = error.path().to_string().replace(['[', ']'], "");
             let place = if place == "." { String::new() } else { place };
-            mistakes.push(Mistake {
-                span: tree.find_span(&place),
-                message: error.into_inner().to_string(),
-                place,
-            });
+            mistakes.push(Mistake { span: tree.find_span(&place), message: error.into_inner().to_string(), place });
         })
         .ok()
 }

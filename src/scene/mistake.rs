@@ -31,11 +31,7 @@ impl SceneError {
     /// An error of the mistakes in `source`, sorted, each once.
     pub(super) fn new(source: &Source, mut mistakes: Vec<Mistake>) -> Self {
         if mistakes.is_empty() {
-            mistakes.push(Mistake {
-                span: None,
-                place: String::new(),
-                message: "the scene cannot be read".to_owned(),
-            });
+            mistakes.push(Mistake { span: None, place: String::new(), message: "the scene cannot be read".to_owned() });
         }
         mistakes.sort_by(|a, b| {
             let key = |m: &Mistake| m.span.as_ref().map_or(0, |s| s.start);
@@ -43,11 +39,7 @@ impl SceneError {
         });
         // What is inherited by `like` is reported once, where it is written.
         mistakes.dedup_by(|a, b| a.message == b.message && a.span == b.span && a.span.is_some());
-        Self {
-            name: source.name.clone(),
-            text: source.text.clone(),
-            mistakes,
-        }
+        Self { name: source.name.clone(), text: source.text.clone(), mistakes }
     }
 
     /// Line and column, from 1, of a byte of the text.

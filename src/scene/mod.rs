@@ -71,8 +71,7 @@ pub fn load(source: &Source, overrides: &[Override]) -> Result<Resolved, SceneEr
         validate::validate(&tree, schema(), &mut mistakes);
     }
     let resolved = if mistakes.is_empty() {
-        document::read(&tree, &mut mistakes)
-            .and_then(|scene| resolve::resolve(scene, source, &tree, &mut mistakes))
+        document::read(&tree, &mut mistakes).and_then(|scene| resolve::resolve(scene, source, &tree, &mut mistakes))
     } else {
         None
     };

@@ -73,11 +73,7 @@ impl Resolved {
     /// An error at `place`, a dotted path of keys.
     #[must_use]
     pub fn error(&self, place: &str, message: impl Into<String>) -> SceneError {
-        let mistake = Mistake {
-            span: self.tree.find_span(place),
-            place: place.to_owned(),
-            message: message.into(),
-        };
+        let mistake = Mistake { span: self.tree.find_span(place), place: place.to_owned(), message: message.into() };
         SceneError::new(&self.source, vec![mistake])
     }
 
@@ -96,18 +92,8 @@ struct Resolver<'a> {
 }
 
 /// Resolves `scene`; adds what is wrong with it.
-pub(super) fn resolve(
-    scene: Scene,
-    source: &Source,
-    tree: &Entry,
-    mistakes: &mut Vec<Mistake>,
-) -> Option<Resolved> {
-    let mut r = Resolver {
-        scene: &scene,
-        folder: &source.folder,
-        tree,
-        mistakes,
-    };
+pub(super) fn resolve(scene: Scene, source: &Source, tree: &Entry, mistakes: &mut Vec<Mistake>) -> Option<Resolved> {
+    let mut r = Resolver { scene: &scene, folder: &source.folder, tree, mistakes };
     for (name, spec) in &scene.shape {
         let shape = spec.resolve(&scene.shape);
         r.note(&format!("shape.{name}"), shape);
@@ -121,7 +107,9 @@ pub(super) fn resolve(
         scene.object.iter().map(|(name, spec)| r.object(name, spec, &materials)).collect();
     let lights = r.lights(is_flat);
     for (name, claim) in &scene.claim {
-        for (key, step) in [("of", Some(&claim.of)), ("more_than", claim.more_than.as_ref()), ("with", claim.with.as_ref())] {
+        for (key, step) in
+            [("of", Some(&claim.of)), ("more_than", claim.more_than.as_ref()), ("with", claim.with.as_ref())]
+        {
             if let Some(step) = step {
                 r.find(&format!("claim.{name}.{key}"), "step", step, scene.grow.keys());
             }
@@ -135,10 +123,8 @@ pub(super) fn resolve(
             r.wrong(key, format!("a scene needs at least one `[{key}.NAME]`"));
         }
     }
-    let [plain, flat] = [
-        CameraSpec::default(),
-        CameraSpec { rise: Degrees(0.0), angle: Degrees(0.0), ..CameraSpec::default() },
-    ];
+    let [plain, flat] =
+        [CameraSpec::default(), CameraSpec { rise: Degrees(0.0), angle: Degrees(0.0), ..CameraSpec::default() }];
     let white = Colour([1.0; 3]);
     let pale = Sky { horizon: Colour([0.78, 0.84, 0.88]), zenith: Colour([0.25, 0.43, 0.68]) };
     Some(Resolved {
@@ -162,11 +148,7 @@ pub(super) fn resolve(
 
 impl Resolver<'_> {
     fn wrong(&mut self, place: &str, message: String) {
-        self.mistakes.push(Mistake {
-            span: self.tree.find_span(place),
-            place: place.to_owned(),
-            message,
-        });
+        self.mistakes.push(Mistake { span: self.tree.find_span(place), place: place.to_owned(), message });
     }
 
     /// The value, or its error noted at `place`.
@@ -218,7 +200,8 @@ impl Resolver<'_> {
         };
         let NodesSpec::Lattice(LatticeSpec { spacing, neighbours }) = spec.nodes;
         let shape = shape?;
-        let window = self.note(&format!("{place}.nodes.lattice.spacing"), Space::window(&shape, spacing, neighbours))?;
+        let window =
+            self.note(&format!("{place}.nodes.lattice.spacing"), Space::window(&shape, spacing, neighbours))?;
         let up = if neighbours.dimensions() == 2 { 1 } else { 2 };
         let fields: Vec<_> = spec
             .field
@@ -243,10 +226,7 @@ impl Resolver<'_> {
             MeasureSpec::Axis { along, through } => {
                 let along = along.map_or(upright, |p| p.0);
                 let unit = along.try_normalize().ok_or("an axis needs a direction, not the zero vector");
-                Measure::Axis {
-                    through: through.map_or(DVec3::ZERO, |p| p.0),
-                    along: self.note(&of("axis"), unit)?,
-                }
+                Measure::Axis { through: through.map_or(DVec3::ZERO, |p| p.0), along: self.note(&of("axis"), unit)? }
             }
             MeasureSpec::Point(Point(p)) => Measure::Point(*p),
             MeasureSpec::Height { cheap } => {
@@ -260,14 +240,11 @@ impl Resolver<'_> {
             }
             MeasureSpec::Shape(shape) => Measure::Shape(self.shape(&of("shape"), shape)?),
             MeasureSpec::Map { file } => {
-                let picture = self.folder.read(file).and_then(|bytes| {
-                    decode_grey(&bytes).map_err(|error| format!("cannot read `{file}`: {error}"))
-                });
-                Measure::Map {
-                    picture: Arc::new(self.note(&of("map.file"), picture)?),
-                    frame,
-                    up,
-                }
+                let picture = self
+                    .folder
+                    .read(file)
+                    .and_then(|bytes| decode_grey(&bytes).map_err(|error| format!("cannot read `{file}`: {error}")));
+                Measure::Map { picture: Arc::new(self.note(&of("map.file"), picture)?), frame, up }
             }
             MeasureSpec::Sketch { file } => {
                 let lines = self.sketch(&of("sketch.file"), file, frame, up)?.0;
@@ -286,9 +263,10 @@ impl Resolver<'_> {
 
     /// The strokes and the points of an SVG file, its page stretched over `frame`: (across, up, 0).
     fn sketch(&mut self, place: &str, file: &str, frame: Bounds, up: usize) -> Option<(Vec<Vec<DVec3>>, Vec<DVec3>)> {
-        let page = self.folder.read(file).and_then(|bytes| {
-            decode_sketch(&bytes).map_err(|error| format!("cannot read `{file}`: {error}"))
-        });
+        let page = self
+            .folder
+            .read(file)
+            .and_then(|bytes| decode_sketch(&bytes).map_err(|error| format!("cannot read `{file}`: {error}")));
         let page = self.note(place, page)?;
         let size = frame.size();
         let stretch = |p: DVec2| DVec3::new(frame.min.x + p.x * size.x, frame.min[up] + p.y * size[up], 0.0);
@@ -316,7 +294,8 @@ impl Resolver<'_> {
             .to
             .iter()
             .map(|(key, set)| {
-                let placement = self.placement(&format!("{place}.to.{key}"), &format!("{name}/{key}"), set, space.as_ref());
+                let placement =
+                    self.placement(&format!("{place}.to.{key}"), &format!("{name}/{key}"), set, space.as_ref());
                 let class = classes.binary_search(&set.class).unwrap_or(0) as u16;
                 placement.map(|placement| Endpoints { name: key.clone(), class, placement })
             })
@@ -362,7 +341,8 @@ impl Resolver<'_> {
                 Some(Placement::At(points.into_iter().map(raise).collect()))
             }
             _ => {
-                let message = "endpoints need exactly one of `count` (at random), `at` (a list) and `sketch` (an SVG file)";
+                let message =
+                    "endpoints need exactly one of `count` (at random), `at` (a list) and `sketch` (an SVG file)";
                 self.wrong(place, message.to_owned());
                 None
             }

@@ -91,28 +91,16 @@ pub(super) fn parse(text: &str) -> (Entry, Vec<Mistake>) {
     let (table, errors) = DeTable::parse_recoverable(text);
     let mistakes = errors
         .iter()
-        .map(|error| Mistake {
-            span: error.span(),
-            place: String::new(),
-            message: error.message().to_owned(),
-        })
+        .map(|error| Mistake { span: error.span(), place: String::new(), message: error.message().to_owned() })
         .collect();
     let span = table.span();
-    let root = Entry {
-        value: convert_table(table.get_ref()),
-        span: Some(span),
-        key_span: None,
-    };
+    let root = Entry { value: convert_table(table.get_ref()), span: Some(span), key_span: None };
     (root, mistakes)
 }
 
 fn convert_table(table: &DeTable<'_>) -> Value {
     let entries = table.iter().map(|(key, value)| {
-        let entry = Entry {
-            value: convert(value.get_ref()),
-            span: Some(value.span()),
-            key_span: Some(key.span()),
-        };
+        let entry = Entry { value: convert(value.get_ref()), span: Some(value.span()), key_span: Some(key.span()) };
         (key.get_ref().to_string(), entry)
     });
     Value::Table(entries.collect())
@@ -124,19 +112,13 @@ fn convert(value: &DeValue<'_>) -> Value {
         DeValue::Array(items) => Value::Array(
             items
                 .iter()
-                .map(|item| Entry {
-                    value: convert(item.get_ref()),
-                    span: Some(item.span()),
-                    key_span: None,
-                })
+                .map(|item| Entry { value: convert(item.get_ref()), span: Some(item.span()), key_span: None })
                 .collect(),
         ),
         DeValue::String(text) => Value::String(text.to_string()),
         DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix())
             .map_or(Value::Other("a whole number of more than 64 bits"), Value::Integer),
-        DeValue::Float(number) => {
-            number.as_str().parse().map_or(Value::Other("no number"), Value::Float)
-        }
+        DeValue::Float(number) => number.as_str().parse().map_or(Value::Other("no number"), Value::Float),
         DeValue::Boolean(b) => Value::Boolean(*b),
         DeValue::Datetime(_) => Value::Other("a date"),
     }
@@ -151,11 +133,7 @@ fn without_spans(mut value: Value) -> Value {
     };
     for entry in entries {
         let inner = std::mem::replace(&mut entry.value, Value::Boolean(false));
-        *entry = Entry {
-            value: without_spans(inner),
-            span: None,
-            key_span: None,
-        };
+        *entry = Entry { value: without_spans(inner), span: None, key_span: None };
     }
     value
 }

@@ -45,7 +45,8 @@ impl<'a> Walk<'a> {
             return match fits {
                 Some(choice) => self.check(entry, choice, place),
                 None => {
-                    let wanted: Vec<_> = choices.iter().map(|c| self.wanted(self.follow(c))).filter(|w| w != "nothing").collect();
+                    let wanted: Vec<_> =
+                        choices.iter().map(|c| self.wanted(self.follow(c))).filter(|w| w != "nothing").collect();
                     self.wrong(entry, place, format!("expected {}, found {}", wanted.join(" or "), entry.value.kind()));
                 }
             };
@@ -76,10 +77,8 @@ impl<'a> Walk<'a> {
     /// An enum: a word alone, or a table with the word as its only key.
     fn check_choice(&mut self, entry: &Entry, choices: &'a [Json], place: &str) {
         let words: Vec<String> = choices.iter().flat_map(|c| words(self.follow(c))).collect();
-        let tagged: Vec<(&'a String, &'a Json)> = choices
-            .iter()
-            .filter_map(|c| self.follow(c).get("properties")?.as_object()?.iter().next())
-            .collect();
+        let tagged: Vec<(&'a String, &'a Json)> =
+            choices.iter().filter_map(|c| self.follow(c).get("properties")?.as_object()?.iter().next()).collect();
         let listed = || {
             let tags = tagged.iter().map(|(tag, _)| format!("{{ {tag} = ... }}"));
             words.iter().map(|w| format!("\"{w}\"")).chain(tags).collect::<Vec<_>>().join(", ")
@@ -135,9 +134,8 @@ impl<'a> Walk<'a> {
                 self.check(value, schema, &inner);
             } else if let Some(schema @ Json::Object(_)) = schema.get("additionalProperties") {
                 if !is_name(key) {
-                    let message = format!(
-                        "{key:?} is no name: use a letter, then letters, digits, `_` and `-`, 40 at most"
-                    );
+                    let message =
+                        format!("{key:?} is no name: use a letter, then letters, digits, `_` and `-`, 40 at most");
                     self.wrong_key(value, &inner, message);
                 }
                 self.check(value, schema, &inner);
@@ -188,7 +186,8 @@ impl<'a> Walk<'a> {
         let bound = |key| schema.get(key).and_then(Json::as_f64);
         let above = bound("exclusiveMinimum");
         let (least, most) = (bound("minimum"), bound("maximum"));
-        let fits = above.is_none_or(|b| number > b) && least.is_none_or(|b| number >= b) && most.is_none_or(|b| number <= b);
+        let fits =
+            above.is_none_or(|b| number > b) && least.is_none_or(|b| number >= b) && most.is_none_or(|b| number <= b);
         if !fits {
             let wanted = match (above, least, most) {
                 (Some(a), _, Some(m)) => format!("above {a} and at most {m}"),
@@ -254,7 +253,8 @@ impl<'a> Walk<'a> {
         match schema.get("type") {
             Some(Json::String(kind)) => word(kind).to_owned(),
             Some(Json::Array(kinds)) => {
-                let words: Vec<_> = kinds.iter().filter_map(Json::as_str).map(word).filter(|w| *w != "nothing").collect();
+                let words: Vec<_> =
+                    kinds.iter().filter_map(Json::as_str).map(word).filter(|w| *w != "nothing").collect();
                 words.join(" or ")
             }
             _ if schema.get("oneOf").is_some() => "a choice".to_owned(),

@@ -71,15 +71,7 @@ impl Skeleton {
         for (node, position, cost) in fresh.into_iter().rev() {
             let at = self.nodes.len() as u32;
             known.insert(node, at);
-            self.nodes.push(SkeletonNode {
-                position,
-                parent,
-                cost,
-                radius: 0.0,
-                branch: 0,
-                level: 0,
-                class,
-            });
+            self.nodes.push(SkeletonNode { position, parent, cost, radius: 0.0, branch: 0, level: 0, class });
             parent = Some(at);
         }
         self.paths.extend(parent.map(|end| Path { end, class }));
@@ -87,9 +79,7 @@ impl Skeleton {
 
     /// The nodes with their parents, roots left out.
     pub fn segments(&self) -> impl Iterator<Item = (&SkeletonNode, &SkeletonNode)> {
-        self.nodes
-            .iter()
-            .filter_map(|node| node.parent.map(|p| (&self.nodes[p as usize], node)))
+        self.nodes.iter().filter_map(|node| node.parent.map(|p| (&self.nodes[p as usize], node)))
     }
 
     /// For each node the child that continues its limb: the thickest, then the one whose paths cost most, then the

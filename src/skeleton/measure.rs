@@ -54,9 +54,8 @@ pub fn measure(skeleton: &Skeleton) -> Measurement {
         offsets += step * offset(middle);
         heights += step * height(middle);
     }
-    let most = |f: &dyn Fn(DVec3) -> f64| {
-        skeleton.nodes.iter().map(|n| f(n.position)).fold(f64::MIN_POSITIVE, f64::max)
-    };
+    let most =
+        |f: &dyn Fn(DVec3) -> f64| skeleton.nodes.iter().map(|n| f(n.position)).fold(f64::MIN_POSITIVE, f64::max);
     let top = most(&height);
     let ratios: Vec<f64> = skeleton
         .paths

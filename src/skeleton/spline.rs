@@ -12,38 +12,42 @@ const MOST_BENDS: u32 = 6;
 #[must_use]
 pub fn bend(skeleton: &Skeleton) -> Skeleton {
     let main = skeleton.main_children();
-    resample(skeleton, |from, to, i| {
-        let turn = |a: DVec3, b: DVec3| {
-            let (a, b) = (a.normalize_or_zero(), b.normalize_or_zero());
-            a.dot(b).clamp(-1.0, 1.0)
-        };
-        let way = to.position - from.position;
-        let before = from.parent.map(|p| turn(from.position - skeleton.nodes[p as usize].position, way));
-        let after = main[i].map(|n| turn(way, skeleton.nodes[n as usize].position - to.position));
-        let sharpest = before.unwrap_or(1.0).min(after.unwrap_or(1.0));
-        // The angle in units of ten degrees, by 1 - cos t = t^2 / 2.
-        libm::ceil(libm::sqrt((1.0 - sharpest) / (1.0 - BEND_COS))) as u32
-    }, MOST_BENDS)
+    resample(
+        skeleton,
+        |from, to, i| {
+            let turn = |a: DVec3, b: DVec3| {
+                let (a, b) = (a.normalize_or_zero(), b.normalize_or_zero());
+                a.dot(b).clamp(-1.0, 1.0)
+            };
+            let way = to.position - from.position;
+            let before = from.parent.map(|p| turn(from.position - skeleton.nodes[p as usize].position, way));
+            let after = main[i].map(|n| turn(way, skeleton.nodes[n as usize].position - to.position));
+            let sharpest = before.unwrap_or(1.0).min(after.unwrap_or(1.0));
+            // The angle in units of ten degrees, by 1 - cos t = t^2 / 2.
+            libm::ceil(libm::sqrt((1.0 - sharpest) / (1.0 - BEND_COS))) as u32
+        },
+        MOST_BENDS,
+    )
 }
 
 /// Adds nodes so that neighbours are no further apart than `share` of the smaller radius: a string of spheres that
 /// reads as a limb. At most `most` pieces a segment.
 #[must_use]
 pub fn overlap(skeleton: &Skeleton, share: f64, most: u32) -> Skeleton {
-    resample(skeleton, |from, to, _| {
-        let gap = from.radius.min(to.radius) * share;
-        let pieces = (to.position - from.position).length() / gap;
-        if pieces.is_finite() { libm::ceil(pieces).min(f64::from(most)) as u32 } else { most }
-    }, most)
+    resample(
+        skeleton,
+        |from, to, _| {
+            let gap = from.radius.min(to.radius) * share;
+            let pieces = (to.position - from.position).length() / gap;
+            if pieces.is_finite() { libm::ceil(pieces).min(f64::from(most)) as u32 } else { most }
+        },
+        most,
+    )
 }
 
 /// Cuts the segment to each node into as many pieces as `pieces` says, along a Catmull-Rom spline through the nodes
 /// of its limb; cost and radius change evenly.
-fn resample(
-    skeleton: &Skeleton,
-    pieces: impl Fn(&SkeletonNode, &SkeletonNode, usize) -> u32,
-    most: u32,
-) -> Skeleton {
+fn resample(skeleton: &Skeleton, pieces: impl Fn(&SkeletonNode, &SkeletonNode, usize) -> u32, most: u32) -> Skeleton {
     let main = skeleton.main_children();
     let mut renamed: Vec<u32> = Vec::with_capacity(skeleton.nodes.len());
     let mut nodes = Vec::with_capacity(skeleton.nodes.len());
@@ -76,21 +80,13 @@ fn resample(
     for path in &mut paths {
         path.end = renamed[path.end as usize];
     }
-    Skeleton {
-        nodes,
-        paths,
-        classes: skeleton.classes.clone(),
-    }
+    Skeleton { nodes, paths, classes: skeleton.classes.clone() }
 }
 
 /// The uniform Catmull-Rom spline from p1 (t = 0) to p2 (t = 1) (Catmull and Rom 1974).
 fn catmull_rom([p0, p1, p2, p3]: [DVec3; 4], t: f64) -> DVec3 {
     let (t2, t3) = (t * t, t * t * t);
-    (p1 * 2.0
-        + (p2 - p0) * t
-        + (p0 * 2.0 - p1 * 5.0 + p2 * 4.0 - p3) * t2
-        + (p1 * 3.0 - p0 - p2 * 3.0 + p3) * t3)
-        * 0.5
+    (p1 * 2.0 + (p2 - p0) * t + (p0 * 2.0 - p1 * 5.0 + p2 * 4.0 - p3) * t2 + (p1 * 3.0 - p0 - p2 * 3.0 + p3) * t3) * 0.5
 }
 
 #[cfg(test)]

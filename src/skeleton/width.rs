@@ -164,11 +164,7 @@ mod tests {
     use super::*;
 
     fn taper(from: f64, to: f64, beta: f64) -> Width {
-        Width::Taper(Taper {
-            from: PerClass::All(from),
-            to: PerClass::All(to),
-            beta: PerClass::All(beta),
-        })
+        Width::Taper(Taper { from: PerClass::All(from), to: PerClass::All(to), beta: PerClass::All(beta) })
     }
 
     #[test]

@@ -1,0 +1,74 @@
+//! Writing POV-Ray: bytes a second for a million primitives.
+
+use std::hint::black_box;
+use std::io;
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use lichtenberg::export::{Origin, Pov, Templates};
+use lichtenberg::math::{Colour, DVec3, Stream};
+use lichtenberg::model::{Ball, Camera, CameraSpec, Digits, Material, Model, Object, Sky};
+use rand::RngExt;
+
+/// A writer that counts and forgets.
+struct Count(u64);
+
+impl io::Write for Count {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0 += bytes.len() as u64;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// A chain of half a million balls that wanders through a box of 12 units, with a cone between each two.
+fn million() -> Model {
+    let digits = Digits::for_size(12.0);
+    let mut stream = Stream::new(1, "million");
+    let mut at = DVec3::ZERO;
+    let balls: Vec<Ball> = (0..500_000)
+        .map(|_| {
+            let [x, y, z]: [f64; 3] = std::array::from_fn(|_| stream.random_range(-0.05..0.05));
+            at = (at + DVec3::new(x, y, z)).clamp(DVec3::splat(-6.0), DVec3::splat(6.0));
+            let radius = digits.round(stream.random_range(0.005..0.02));
+            Ball { centre: digits.round_point(at), radius, cost: 0.0, branch: 0, level: 0 }
+        })
+        .collect();
+    let segments = (1..balls.len() as u32).map(|i| [i - 1, i]).collect();
+    let object = Object { name: "chain".to_owned(), foot: DVec3::ZERO, material: 0, balls, segments, digits };
+    let grey = Colour([0.5; 3]);
+    Model {
+        title: "A million primitives".to_owned(),
+        is_flat: false,
+        objects: vec![object],
+        materials: vec![("plain".to_owned(), Material::matt(grey))],
+        camera: Camera::new(&CameraSpec::default(), 1.0, [(DVec3::ZERO, 6.0)].into_iter()).expect("a view"),
+        lights: Vec::new(),
+        ground: None,
+        sky: Sky { horizon: grey, zenith: grey },
+        marks: Vec::new(),
+    }
+}
+
+fn export(c: &mut Criterion) {
+    let model = million();
+    let templates = Templates::default();
+    let pov = Pov::new(&model, &templates, "million", [640, 480], &Origin::default());
+    let mut count = Count(0);
+    pov.write_inc(&mut count).expect("nothing can fail");
+    let mut group = c.benchmark_group("export");
+    group.throughput(Throughput::Bytes(count.0)).sample_size(10);
+    group.bench_function("a million primitives to POV-Ray", |b| {
+        b.iter(|| {
+            let mut count = Count(0);
+            pov.write_inc(&mut count).expect("nothing can fail");
+            black_box(count.0)
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, export);
+criterion_main!(benches);
