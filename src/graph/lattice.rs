@@ -14,7 +14,7 @@ const AXIS_KEYS: [u64; 3] = [0x6a09_e667_f3bc_c909, 0xbb67_ae85_84ca_a73b, 0x3c6
 const WIDE: usize = 3_000_000;
 
 /// Layers of a slab ([`Graph::slab`]).
-const SLAB: u32 = 16;
+const SLAB: u32 = 32;
 
 /// The part of the infinite lattice (all multiples of the spacing) that is used.
 ///

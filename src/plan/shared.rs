@@ -70,12 +70,14 @@ pub(super) fn run<G: Graph>(
         settled: AtomicUsize::new(0),
     };
     std::thread::scope(|scope| {
-        for own in 1..threads {
+        // None of them on this thread, whose other memory slowed its part by a quarter.
+        let (mut first, mut progress) = (Some(buckets), Some(progress));
+        for own in 0..threads {
             let shared = &shared;
-            let empty = Buckets::new(shared.front.width.count());
-            scope.spawn(move || shared.work(own, empty, Wanted::new(wanted), None));
+            let buckets = first.take().unwrap_or_else(|| Buckets::new(shared.front.width.count()));
+            let progress = progress.take();
+            scope.spawn(move || shared.work(own, buckets, Wanted::new(wanted), progress));
         }
-        shared.work(0, buckets, Wanted::new(wanted), Some(progress));
     });
     if shared.stop.into_inner() != NEVER {
         return Err(Cancelled);
