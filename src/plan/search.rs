@@ -100,7 +100,8 @@ pub(super) fn plan_on<'g, G: Graph>(
     };
     let front = Front { graph, cells: &cells, width, start };
     let settled = if threads > 1 {
-        shared::run(front, buckets, wanted, threads, progress)?
+        // Rounded down to a power of two.
+        shared::run(front, buckets, wanted, 1 << threads.ilog2(), progress)?
     } else {
         run_alone(&front, buckets, Wanted::new(wanted), progress)?
     };

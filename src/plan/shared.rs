@@ -53,7 +53,7 @@ struct Shared<'a, G> {
     settled: AtomicUsize,
 }
 
-/// Runs the search from what is in `buckets` on `threads` threads; returns how many nodes were settled.
+/// Runs the search from what is in `buckets` on `threads` threads, a power of two; returns how many nodes were settled.
 pub(super) fn run<G: Graph>(
     front: Front<'_, G>,
     buckets: Buckets,
@@ -95,17 +95,21 @@ impl<G: Graph> Shared<'_, G> {
         let Front { graph, cells, width, start } = *front;
         let mut base = width.base(start);
         let mut idle = 0;
+        // A power of two, so that slabs fall to their owners by a mask.
+        let others = self.inboxes.len() as u32 - 1;
         let mut sorted: Vec<Vec<u32>> = vec![Vec::new(); self.inboxes.len()];
         for turn in 0_u32.. {
             let parity = turn as usize % 2;
             let count = &self.counts[turn as usize % 3];
+            let mut taken_nodes = 0;
             let mut taken = buckets.take(width.bucket(base));
             while let Some((places, len)) = buckets.next_chunk(&mut taken) {
-                count.fetch_add(len, Ordering::Relaxed);
+                taken_nodes += len;
                 for &node in &places[1..len] {
-                    sorted[graph.slab(Node(node)) as usize % self.inboxes.len()].push(node);
+                    sorted[(graph.slab(Node(node)) & others) as usize].push(node);
                 }
             }
+            count.fetch_add(taken_nodes, Ordering::Relaxed);
             for (owner, nodes) in
                 sorted.iter_mut().enumerate().filter(|(owner, nodes)| *owner != own && !nodes.is_empty())
             {
