@@ -92,6 +92,16 @@ fn bad_scenes_get_one_clear_error() {
 }
 
 #[test]
+fn unreached_endpoints_can_be_dropped() {
+    let wall = "forbid = { box = { min = [-9, 0.45], max = [9, 0.55] } }\n[grow.twig]\nunreached = \"drop\"";
+    let some = TWIG.replace("[grow.twig]", wall).replace("count = 5", "at = [[0, 0.3], [0, 1], [1, 2]]");
+    let folder = folder_with("twig.toml", &some);
+    let output = run_in(folder.path(), &["export", "twig", "--to", "svg"]);
+    let said = text(&output.stderr);
+    assert!(output.status.success() && said.contains("dropped 2 endpoints"), "{said}");
+}
+
+#[test]
 fn every_mistake_is_reported() {
     let text = TWIG
         .replace("spacing = 0.1", "spacing = -1")

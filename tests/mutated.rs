@@ -36,6 +36,8 @@ const WORDS: &[&str] = &[
     "like = \"first\"",
 ];
 
+const NUMBERS: &[&str] = &["0", "1", "7", "40", "1000", "0.001", "1e-9", "1e6", "-1", "-0.5"];
+
 /// Scenes small enough that hundreds of them can be grown.
 fn small(text: &str) -> String {
     text.replace("spacing = 0.16", "spacing = 1.28")
@@ -47,12 +49,12 @@ fn small(text: &str) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(600))]
+    #![proptest_config(ProptestConfig::with_cases(3000))]
 
     #[test]
     fn mutated_scenes_do_no_harm(
         which in any::<prop::sample::Index>(),
-        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..4_u8), 1..4),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..8_u8), 1..4),
     ) {
         let scenes = embedded_scenes();
         let (name, text, folder) = which.get(&scenes).clone();
@@ -71,7 +73,14 @@ proptest! {
                 0 => tokens[at] = (*word.get(WORDS)).to_owned(),
                 1 => tokens[at] = String::new(),
                 2 => tokens[at] = tokens[other].clone(),
-                _ => tokens.swap(at, other),
+                3 => tokens.swap(at, other),
+                // Numbers for numbers: many of these scenes are good, or wrong only further in.
+                _ => {
+                    let is_number = |t: &String| t.starts_with(|c: char| c.is_ascii_digit());
+                    let numbers: Vec<usize> = (0..tokens.len()).filter(|&i| is_number(&tokens[i])).collect();
+                    let (to, from) = (numbers[at % numbers.len()], numbers[other % numbers.len()]);
+                    tokens[to] = if how < 6 { tokens[from].clone() } else { NUMBERS[other % NUMBERS.len()].to_owned() };
+                }
             }
         }
         let source = Source { name, text: tokens.concat(), folder };
