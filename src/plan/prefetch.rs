@@ -1,7 +1,6 @@
 //! A hint to the cache, the project's one use of `unsafe`.
 //!
-//! `benches/plan.rs` justifies it: without the hint planning takes 1.5 to 2 times as long above 128^3
-//! (`benches/README.md`).
+//! Left out, `benches/plan.rs` takes 1.5 times as long at 256^3 and 1.2 times at 2048^2 (`benches/README.md`).
 
 /// Asks for the cache line of `slice[index]`; does nothing where the index is out of range.
 #[inline(always)]

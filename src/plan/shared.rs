@@ -70,7 +70,7 @@ pub(super) fn run<G: Graph>(
         settled: AtomicUsize::new(0),
     };
     std::thread::scope(|scope| {
-        // None of them on this thread, whose other memory slowed its part by a quarter.
+        // All on threads of their own: where this one took a part, the other waited a quarter of the time for it.
         let (mut first, mut progress) = (Some(buckets), Some(progress));
         for own in 0..threads {
             let shared = &shared;
