@@ -6,7 +6,7 @@ use std::io;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use lichtenberg::export::{Origin, Pov, Templates};
 use lichtenberg::math::{Colour, DVec3, Stream};
-use lichtenberg::model::{Ball, Camera, CameraSpec, Digits, Material, Model, Object, Sky};
+use lichtenberg::model::{Ball, Camera, CameraSpec, Digits, Instance, Material, Mesh, Model, Object, Sky};
 use rand::RngExt;
 
 /// A chain of half a million balls that wanders through a box of 12 units, with a cone between each two.
@@ -23,7 +23,15 @@ fn million() -> Model {
         })
         .collect();
     let segments = (1..balls.len() as u32).map(|i| [i - 1, i]).collect();
-    let object = Object { name: "chain".to_owned(), foot: DVec3::ZERO, material: 0, balls, segments, digits };
+    let object = Object {
+        name: "chain".to_owned(),
+        instances: vec![Instance::at(DVec3::ZERO)],
+        material: 0,
+        balls,
+        segments,
+        mesh: Mesh::default(),
+        digits,
+    };
     let grey = Colour([0.5; 3]);
     Model {
         title: "A million primitives".to_owned(),
@@ -33,7 +41,7 @@ fn million() -> Model {
         camera: Camera::new(&CameraSpec::default(), 1.0, [(DVec3::ZERO, 6.0)].into_iter()).expect("a view"),
         lights: Vec::new(),
         ground: None,
-        sky: Sky { horizon: grey, zenith: grey },
+        sky: Sky::plain(grey),
         marks: Vec::new(),
     }
 }

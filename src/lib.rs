@@ -49,8 +49,10 @@
 //! planning for natural phenomena modeling*) and 2012, and Amin's Growth module after Greene's voxel space automata;
 //! equations and figures are cited where they are used.
 
+pub mod bvh;
 #[cfg(feature = "cli")]
 pub mod cli;
+pub mod compare;
 pub mod export;
 pub mod files;
 pub mod geom;
@@ -63,3 +65,4 @@ pub mod raster;
 pub mod render;
 pub mod scene;
 pub mod skeleton;
+pub mod trace;

@@ -11,6 +11,7 @@ const STAGES: &[&[&str]] = &[
     &["math"],
     &["raster"],
     &["geom"],
+    &["bvh"],
     &["graph"],
     &["plan"],
     &["skeleton"],

@@ -71,7 +71,11 @@ fn bad_scenes_get_one_clear_error() {
     bad("[grow.twig]", "weights = { max = 1e6, alpha = 1.1 }\n[grow.twig]", &["lower alpha"]);
     bad("width.constant", "width.constent", &["did you mean `constant`"]);
     bad("grow = [\"twig\"]", "grow = [\"twgi\"]", &["did you mean `twig`"]);
-    bad("grow = [\"twig\"]", "grow = []", &["at least 1 items"]);
+    bad("grow = [\"twig\"]", "grow = []", &["either steps (`grow`) or a `mesh`"]);
+    bad("grow = [\"twig\"]", "mesh = \"none.obj\"", &["cannot read `none.obj`"]);
+    bad("[grow.twig]", "[sky]\nhorizon = [1, 1, 1]\n[grow.twig]", &["both `horizon` and `zenith`"]);
+    bad("[grow.twig]", "[sky]\ncolour = [1, 1, 1]\nfile = \"a.exr\"\n[grow.twig]", &["exactly one of `colour`"]);
+    bad("[grow.twig]", "[sky]\nfile = \"a.exr\"\n[grow.twig]", &["sky.file", "cannot read `a.exr`"]);
     bad("[object.twig]", "[object.\"a\\nb\"]", &["is no name"]);
     bad("[object.twig]", "[object.\"../x\"]", &["is no name"]);
     bad("title = \"Twig\"", "title = Twig", &["twig.toml:1"]);
@@ -148,7 +152,14 @@ fn bad_calls_get_one_clear_error() {
     let folder = folder_with("twig.toml", TWIG);
     let at = folder.path();
     fails(at, &["export", "twgi", "--to", "pov"], 2, &["no scene file or embedded scene"]);
-    fails(at, &["render", "twig"], 2, &["--with", "--schematic"]);
+    fails(at, &["render", "twig", "--crop", "0,0,9000,2"], 2, &["does not lie within", "640 by 480"]);
+    fails(at, &["render", "twig", "--crop", "1,2,3"], 2, &["left, top, width, height"]);
+    fails(at, &["render", "twig", "--samples", "0"], 2, &["1..=4096"]);
+    fails(at, &["render", "twig", "--show", "contours"], 2, &["--schematic"]);
+    fails(at, &["render", "twig", "--with", "povray", "-o", "a.exr"], 2, &["must end in .png"]);
+    fails(at, &["render", "twig", "-o", "a.jpg"], 2, &["must end in .png or .exr"]);
+    fails(at, &["render", "elm", "--watch"], 2, &["a scene file"]);
+    fails(at, &["render", "twig", "--schematic", "--look", "exact"], 2, &["cannot be used with"]);
     for name in ["../x", "a\"b", "a\nb", "", "povray", ".x"] {
         fails(at, &["export", "twig", "--to", "pov", "--name", name], 2, &["is no name for files"]);
     }

@@ -161,7 +161,7 @@ fn schematic_and_povray_agree() {
             "sky={ horizon = [1, 1, 1], zenith = [1, 1, 1] }",
         ];
         let mut pictures = Vec::new();
-        for how in [&["render", "--schematic"][..], &["render", "--with", "povray"]] {
+        for how in [&["render", "--schematic"][..], &["render", "--with", "povray", "--look", "exact"]] {
             // Without a ground both have white behind.
             let ground = if scene.contains("fig06") {
                 &["--set", "ground={ colour = [1, 1, 1], height = -100 }"][..]

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
+use crate::compare::Metric;
 use crate::grow::MarkKind;
 use crate::scene::Override;
 
@@ -30,6 +31,8 @@ pub enum Command {
     Render(RenderArgs),
     /// Write scenes for other programs
     Export(ExportArgs),
+    /// Tell whether pictures have changed: exit 0 the same, 1 different, 2 not comparable
+    Compare(CompareArgs),
     /// List the embedded scenes
     List,
     /// Start a scene of your own: writes NAME.toml here, never over a file
@@ -74,26 +77,38 @@ pub struct SceneArgs {
 }
 
 #[derive(Debug, ClapArgs)]
-#[command(group(clap::ArgGroup::new("how").required(true).args(["with", "schematic"])))]
 pub struct RenderArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// The renderer
+    /// Render with an outside program in place of the built-in preview
     #[arg(long, value_enum)]
     pub with: Option<Renderer>,
     /// Draw black strokes on white, as in the papers
-    #[arg(long)]
+    #[arg(long, conflicts_with = "with")]
     pub schematic: bool,
-    /// Draw marks of the construction too
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "MARKS", requires = "schematic")]
+    /// Show the picture in the terminal too; or, of a schematic, draw these marks of the construction
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "MARKS", num_args = 0..=1, default_missing_value = "terminal")]
     pub show: Vec<Show>,
-    /// Smooth edges
-    #[arg(long, value_enum, default_value = "on", value_name = "WHEN", conflicts_with = "schematic")]
-    pub antialias: Switch,
+    /// How it is lit: studio has light from the whole sky and a soft sun, exact is POV-Ray's local light to the pixel
+    #[arg(long, value_enum, default_value = "studio", conflicts_with = "schematic")]
+    pub look: Look,
+    /// Samples a pixel, 1 for none but its middle; 8 by default in the studio look, 9 in the exact one
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096), conflicts_with = "schematic")]
+    pub samples: Option<u32>,
+    /// Render this part of the picture only: left, top, width, height in pixels
+    #[arg(long, value_name = "X,Y,W,H", value_parser = parse_crop, conflicts_with = "schematic")]
+    pub crop: Option<[u32; 4]>,
+    /// Leave out the sky: alpha is what objects and the ground cover
+    #[arg(long, conflicts_with_all = ["with", "schematic"])]
+    pub transparent: bool,
+    /// Bits a channel of a PNG
+    #[arg(long, value_name = "BITS", value_parser = ["8", "16"], default_value = "8", conflicts_with_all = ["with", "schematic"])]
+    pub bits: String,
     /// Fill in the templates in this folder in place of the program's own
-    #[arg(long, value_name = "DIR", conflicts_with = "schematic")]
+    #[arg(long, value_name = "DIR", requires = "with")]
     pub templates: Option<PathBuf>,
-    /// The picture; {scene}, {seed} and what is swept stand for their values
+    /// The picture, .png or .exr (with depth, normals, places, mattes, path cost and level); {scene}, {seed} and what
+    /// is swept stand for their values
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<String>,
     /// Make one labelled contact sheet of all pictures; without -o it is all that is written
@@ -102,6 +117,9 @@ pub struct RenderArgs {
     /// Leave out pictures that are there already
     #[arg(long)]
     pub skip_existing: bool,
+    /// Render again whenever the scene's files change, coarse first, until interrupted
+    #[arg(long, conflicts_with_all = ["sheet", "skip_existing", "seeds", "sweep"])]
+    pub watch: bool,
 }
 
 #[derive(Debug, ClapArgs)]
@@ -129,6 +147,72 @@ pub struct ExportArgs {
     /// Leave out exports that are there already
     #[arg(long)]
     pub skip_existing: bool,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct CompareArgs {
+    /// The expected picture, or a folder of them (.png, .exr)
+    pub expected: PathBuf,
+    /// The picture that is there, or a folder
+    pub actual: PathBuf,
+    /// What decides; all measures are printed
+    #[arg(long, value_enum)]
+    pub metric: Option<MetricName>,
+    /// Pictures differ above this value of the metric; by default 0.01 (flip), 0.05 (flip-95), 0.1 (flip-max), 2/255
+    /// (max), 0.002 (rms), 0.001 (share)
+    #[arg(long, value_name = "X", value_parser = parse_threshold)]
+    pub threshold: Option<f64>,
+    /// Compare these channels or layers of OpenEXR pictures, in place of R,G,B,A
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    pub channels: Vec<String>,
+    /// Thresholds by file: metric, threshold, and [file."NAME"] with either; compare.toml in EXPECTED by default
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// Write a JUnit report
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// Write a page with the pictures, failed ones first
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
+    /// Write the differences as pictures to this folder
+    #[arg(long, value_name = "DIR")]
+    pub diff: Option<PathBuf>,
+    /// Accept different and new pictures as expected
+    #[arg(long)]
+    pub update: bool,
+    /// Accept them even where CI=true
+    #[arg(long, requires = "update")]
+    pub force: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MetricName {
+    /// Mean FLIP
+    Flip,
+    /// The FLIP that 95 % of the pixels stay below
+    #[value(name = "flip-95")]
+    Flip95,
+    /// The largest FLIP of any pixel (the default)
+    FlipMax,
+    /// Largest difference of a channel
+    Max,
+    /// Root-mean-square difference
+    Rms,
+    /// Share of pixels that differ by more than 2/255
+    Share,
+}
+
+impl From<MetricName> for Metric {
+    fn from(name: MetricName) -> Self {
+        match name {
+            MetricName::Flip => Self::Flip,
+            MetricName::Flip95 => Self::Flip95,
+            MetricName::FlipMax => Self::FlipMax,
+            MetricName::Max => Self::Max,
+            MetricName::Rms => Self::Rms,
+            MetricName::Share => Self::Share,
+        }
+    }
 }
 
 #[derive(Debug, ClapArgs)]
@@ -184,13 +268,17 @@ pub enum Format {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Switch {
-    On,
-    Off,
+pub enum Look {
+    /// Soft: light from the whole sky, a sun with a size, a filmic curve
+    Studio,
+    /// What POV-Ray shows, to the pixel: sharp shadows, constant ambient light
+    Exact,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Show {
+    /// The picture, in the terminal
+    Terminal,
     /// A dot a node of the graph
     Nodes,
     /// A line an edge
@@ -203,14 +291,16 @@ pub enum Show {
     Contours,
 }
 
-impl From<Show> for MarkKind {
-    fn from(show: Show) -> Self {
-        match show {
-            Show::Nodes => Self::Nodes,
-            Show::Edges => Self::Edges,
-            Show::Endpoints => Self::Endpoints,
-            Show::Shapes => Self::Shapes,
-            Show::Contours => Self::Contours,
+impl Show {
+    /// The mark that it names, if it names one.
+    pub fn mark(self) -> Option<MarkKind> {
+        match self {
+            Self::Terminal => None,
+            Self::Nodes => Some(MarkKind::Nodes),
+            Self::Edges => Some(MarkKind::Edges),
+            Self::Endpoints => Some(MarkKind::Endpoints),
+            Self::Shapes => Some(MarkKind::Shapes),
+            Self::Contours => Some(MarkKind::Contours),
         }
     }
 }
@@ -271,6 +361,19 @@ fn parse_sweep(text: &str) -> Result<Sweep, String> {
         }
     }
     Ok(Sweep { path: change.path, values: values.into_iter().map(|v| v.trim().to_owned()).collect() })
+}
+
+fn parse_threshold(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("{text:?} is no number"))?;
+    if value >= 0.0 { Ok(value) } else { Err("a threshold is 0 or more".to_owned()) }
+}
+
+fn parse_crop(text: &str) -> Result<[u32; 4], String> {
+    let numbers: Vec<u32> = text.split(',').map_while(|part| part.trim().parse().ok()).collect();
+    match numbers[..] {
+        [x, y, width, height] if width > 0 && height > 0 && text.split(',').count() == 4 => Ok([x, y, width, height]),
+        _ => Err(format!("{text:?} is no part of a picture: left, top, width, height in pixels, as in 100,80,320,240")),
+    }
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {

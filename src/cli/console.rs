@@ -40,11 +40,16 @@ impl Console {
 
     /// The handle for long work on what `label` names; it shows a bar where stderr is a terminal.
     pub fn progress(&self, label: &str) -> Progress {
+        self.progress_until(label, Arc::clone(&self.stop))
+    }
+
+    /// [`Console::progress`] for work that `stop` ends in place of a signal.
+    pub fn progress_until(&self, label: &str, stop: Arc<AtomicBool>) -> Progress {
         let bar = self.bar.clone();
         bar.reset();
         bar.set_prefix(label.to_owned());
         let mut last = String::new();
-        Progress::new(Arc::clone(&self.stop), move |stage, share| {
+        Progress::new(stop, move |stage, share| {
             if last != stage {
                 stage.clone_into(&mut last);
                 bar.set_message(last.clone());
@@ -58,6 +63,11 @@ impl Console {
     /// Takes the bar away.
     pub fn done(&self) {
         self.bar.finish_and_clear();
+    }
+
+    /// Has a signal come?
+    pub fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
     }
 
     /// The number of the signal that came, if one came.

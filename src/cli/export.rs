@@ -1,6 +1,7 @@
 //! `export`: scenes for other programs.
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::args::{ExportArgs, Format};
@@ -9,7 +10,7 @@ use super::error::Failure;
 use super::jobs::Jobs;
 use super::render::check_name;
 use crate::export::{Pov, SvgOptions, Templates, write_svg};
-use crate::files::{is_edited, seal, write_bytes, write_whole};
+use crate::files::{encode_exr, is_edited, seal, write_bytes, write_whole};
 use crate::grow::MarkKind;
 
 pub fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
@@ -31,7 +32,7 @@ pub fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
         let progress = console.progress(job.name());
         let show: Vec<MarkKind> = match args.to {
             Format::Svg if args.show.is_empty() => scene.show.clone(),
-            Format::Svg => args.show.iter().map(|&s| s.into()).collect(),
+            Format::Svg => args.show.iter().filter_map(|&s| s.mark()).collect(),
             Format::Pov => Vec::new(),
         };
         let model = jobs.model(&scene, &show, console, &progress)?;
@@ -112,6 +113,16 @@ pub fn write_pov(pov: &Pov<'_>, folder: &Path, name: &str, force: bool) -> Resul
     }
     write_whole(&inc, |out| pov.write_inc(out)).map_err(|e| failure(&inc, e))?;
     let mut written = Written { files: vec![inc], kept: Vec::new() };
+    if let Some((sky, strength)) = pov.sky() {
+        let path = folder.join(format!("{name}-sky.exr"));
+        write_whole(&path, |out| {
+            let mut bytes = std::io::Cursor::new(Vec::new());
+            encode_exr(&sky.layers(strength), &mut bytes)?;
+            out.write_all(bytes.get_ref())
+        })
+        .map_err(|e| failure(&path, e))?;
+        written.files.push(path);
+    }
     for (text, path) in filled {
         let edited = match fs::read_to_string(&path) {
             Ok(old) => is_edited(&old),

@@ -192,6 +192,11 @@ impl Job {
         &self.source.name
     }
 
+    /// What it is called while it is worked on.
+    pub fn title(&self) -> &str {
+        if self.label.is_empty() { self.name() } else { &self.label }
+    }
+
     /// The command that repeats what was made, without paths.
     pub fn origin(&self, seed: u64, verb: &str) -> Origin {
         let scene = Path::new(&self.given).file_name().map_or("scene".into(), |n| n.to_string_lossy());

@@ -2,6 +2,7 @@
 
 mod args;
 mod check;
+mod compare;
 mod console;
 mod error;
 mod export;
@@ -10,10 +11,13 @@ mod jobs;
 mod list;
 mod memory;
 mod new;
+mod preview;
 mod render;
 mod schema;
 mod sheet;
 mod shell;
+mod terminal;
+mod watch;
 
 use std::process::ExitCode;
 
@@ -44,6 +48,7 @@ fn run(args: Args, console: &Console) -> Result<(), Failure> {
     match args.command {
         Command::Render(chosen) => render::run(&chosen, threads, console),
         Command::Export(chosen) => export::run(&chosen, console),
+        Command::Compare(chosen) => compare::run(&chosen, console),
         Command::List => list::run(console),
         Command::New(chosen) => new::run(&chosen, console),
         Command::Check(chosen) => check::run(&chosen, console),

@@ -4,15 +4,18 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::args::{RenderArgs, Switch};
+use super::args::{Look, RenderArgs, Show};
 use super::console::Console;
 use super::error::Failure;
 use super::export::{read_templates, write_pov};
 use super::jobs::{Job, Jobs};
+use super::preview::{Drawn, is_exr, samples, trace, view};
 use super::sheet::{Tile, write_sheet};
+use super::{terminal, watch};
 use crate::export::{Pov, SvgOptions, identifier, write_svg};
-use crate::files::{Rgba, decode_png, draw_svg, encode_png, write_whole};
+use crate::files::{Rgba, decode_png, draw_svg};
 use crate::grow::MarkKind;
+use crate::math::Progress;
 use crate::render::Povray;
 use crate::scene::Resolved;
 
@@ -21,33 +24,47 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
     let keep = args.output.is_some() || args.sheet.is_none();
     let default = format!("{}.png", jobs.pattern);
     let outputs = jobs.outputs(args.output.as_ref().unwrap_or(&default))?;
+    let traces = args.with.is_none() && !args.schematic;
     for output in &outputs {
-        require_png(Path::new(output))?;
+        require_picture(Path::new(output), traces)?;
     }
     if let Some(sheet) = &args.sheet {
-        require_png(sheet)?;
+        require_picture(sheet, false)?;
+    }
+    if !args.schematic && args.show.iter().any(|show| show.mark().is_some()) {
+        return Err(Failure::Usage("marks of the construction are drawn with --schematic".to_owned()));
+    }
+    if args.watch {
+        return watch::run(args, threads, console);
     }
     let mut tiles = Vec::new();
     for (job, output) in jobs.list.iter().zip(&outputs) {
         let path = PathBuf::from(output);
         let begun = Instant::now();
-        let picture = if keep && args.skip_existing && path.exists() {
-            let bytes = fs::read(&path).map_err(|e| Failure::file("read", &path, &e))?;
-            let made = decode_png(&bytes).map_err(|e| Failure::Usage(format!("cannot read {output}: {e}")));
+        let screen = if keep && args.skip_existing && path.exists() {
             // Only a sheet needs what is there already.
-            if args.sheet.is_some() { Some(made?) } else { None }
+            if args.sheet.is_none() {
+                continue;
+            }
+            let bytes = fs::read(&path).map_err(|e| Failure::file("read", &path, &e))?;
+            decode_png(&bytes).map_err(|e| Failure::Usage(format!("cannot read {output}: {e}")))?
         } else {
             let scene = jobs.load(job)?;
-            let picture = draw(args, &jobs, job, &scene, threads, console)?;
+            let progress = console.progress(job.title());
+            let drawn = draw(args, &jobs, job, &scene, is_exr(&path), threads, console, &progress)?;
             if keep {
-                write_picture(&path, &picture, &scene)?;
+                drawn.write(&path, args, &scene)?;
                 report(&path, job, &scene, begun, console);
             }
-            Some(picture)
+            if args.sheet.is_none() && !args.show.contains(&Show::Terminal) {
+                continue;
+            }
+            drawn.to_screen()
         };
-        if let Some(picture) = picture.filter(|_| args.sheet.is_some()) {
-            tiles.push(Tile { picture, label: job.label.clone() });
+        if args.show.contains(&Show::Terminal) {
+            terminal::show(&screen, console)?;
         }
+        tiles.push(Tile { picture: screen, label: job.label.clone() });
     }
     console.done();
     if let Some(sheet) = &args.sheet {
@@ -61,14 +78,16 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
     Ok(())
 }
 
-fn require_png(path: &Path) -> Result<(), Failure> {
-    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
+fn require_picture(path: &Path, traces: bool) -> Result<(), Failure> {
+    let is_png = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
+    if is_png || (traces && is_exr(path)) {
         return Ok(());
     }
-    Err(Failure::Usage(format!("{} must end in .png: that is what can be written", path.display())))
+    let endings = if traces { ".png or .exr" } else { ".png" };
+    Err(Failure::Usage(format!("{} must end in {endings}: that is what can be written", path.display())))
 }
 
-fn report(path: &Path, job: &Job, scene: &Resolved, begun: Instant, console: &Console) {
+pub fn report(path: &Path, job: &Job, scene: &Resolved, begun: Instant, console: &Console) {
     if console.json {
         console.result(&serde_json::json!({
             "file": path,
@@ -83,25 +102,32 @@ fn report(path: &Path, job: &Job, scene: &Resolved, begun: Instant, console: &Co
 }
 
 /// The picture of one scene.
-fn draw(
+#[allow(clippy::too_many_arguments, reason = "a scene, how it is drawn, and who listens")]
+pub fn draw(
     args: &RenderArgs,
     jobs: &Jobs,
     job: &Job,
     scene: &Resolved,
+    data: bool,
     threads: Option<usize>,
     console: &Console,
-) -> Result<Rgba, Failure> {
-    let progress = console.progress(if job.label.is_empty() { job.name() } else { &job.label });
+    progress: &Progress,
+) -> Result<Drawn, Failure> {
     if args.schematic {
-        let show: Vec<MarkKind> =
-            if args.show.is_empty() { scene.show.clone() } else { args.show.iter().map(|&s| s.into()).collect() };
-        let model = jobs.model(scene, &show, console, &progress)?;
+        let marks: Vec<MarkKind> = args.show.iter().filter_map(|&s| s.mark()).collect();
+        let marks = if marks.is_empty() { scene.show.clone() } else { marks };
+        let model = jobs.model(scene, &marks, console, progress)?;
         let mut svg = Vec::new();
         write_svg(&model, SvgOptions { size: scene.size }, &mut svg)
             .map_err(|e| Failure::Usage(format!("cannot draw the schematic: {e}")))?;
-        return draw_svg(&String::from_utf8_lossy(&svg), &[]).map_err(Failure::Usage);
+        return draw_svg(&String::from_utf8_lossy(&svg), &[]).map(Drawn::Screen).map_err(Failure::Usage);
     }
-    let model = jobs.model(scene, &[], console, &progress)?;
+    // What is wrong with the call is said before long work.
+    let view = view(args, scene.size, data)?;
+    let model = jobs.model(scene, &[], console, progress)?;
+    if args.with.is_none() {
+        return trace(&model, &view, progress);
+    }
     let templates = read_templates(args.templates.as_deref())?;
     let folder = tempfile::Builder::new()
         .prefix("lichtenberg-")
@@ -110,22 +136,31 @@ fn draw(
     let name = "scene";
     let pov = Pov::new(&model, &templates, name, scene.size, &job.origin(scene.seed, "render"));
     write_pov(&pov, folder.path(), name, true)?;
-    let povray = Povray { size: scene.size, antialias: args.antialias == Switch::On, threads };
-    let rendered = povray.render(folder.path(), "scene.pov", "scene.png", &progress)?;
+    let povray = Povray {
+        size: scene.size,
+        crop: view.crop,
+        samples: libm::round(libm::sqrt(f64::from(samples(args)))) as u32,
+        declare: (args.look == Look::Exact).then(|| format!("{}=1", pov.exact())),
+        threads,
+    };
+    let rendered = povray.render(folder.path(), "scene.pov", "scene.png", progress)?;
     for warning in &rendered.warnings {
         console.note(&format!("povray: {warning}"));
     }
     let picture = fs::read(folder.path().join("scene.png"))
         .map_err(|e| Failure::Outside(format!("povray's picture cannot be read: {e}")))?;
-    decode_png(&picture).map_err(|e| Failure::Outside(format!("povray's picture cannot be read: {e}")))
+    let picture =
+        decode_png(&picture).map_err(|e| Failure::Outside(format!("povray's picture cannot be read: {e}")))?;
+    Ok(Drawn::Screen(cut(&picture, view.crop)))
 }
 
-/// Writes a picture that carries what shaped it.
-fn write_picture(path: &Path, picture: &Rgba, scene: &Resolved) -> Result<(), Failure> {
-    let software = format!("lichtenberg {}", env!("CARGO_PKG_VERSION"));
-    let document = scene.document().to_string();
-    let texts = [("Title", scene.title.as_str()), ("Software", software.as_str()), ("Scene", document.as_str())];
-    write_whole(path, |out| encode_png(picture, &texts, out)).map_err(|e| Failure::file("write", path, &e))
+/// A part of a picture: left, top, width, height.
+fn cut(picture: &Rgba, [left, top, width, height]: [u32; 4]) -> Rgba {
+    let rows = (top..top + height).flat_map(|y| {
+        let from = (y as usize * picture.width as usize + left as usize) * 4;
+        picture.bytes[from..from + width as usize * 4].iter().copied()
+    });
+    Rgba { width, height, bytes: rows.collect() }
 }
 
 /// A name for files and declarations: letters, digits, `_`, `-` and dots within.

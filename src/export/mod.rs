@@ -3,6 +3,7 @@
 mod decimal;
 mod identifier;
 mod pov;
+mod pov_body;
 mod svg;
 mod templates;
 

@@ -5,19 +5,20 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use super::decimal::{number, push_number, push_vector, vector};
+use super::decimal::{number, vector};
 use super::identifier::{identifier, plain};
+use super::pov_body::write_body;
 use super::{TemplateError, Templates};
-use crate::geom::frustum;
 use crate::math::{Colour, DVec3};
-use crate::model::{Digits, Light, Model, Object, Projection};
+use crate::model::{BARK, Digits, Dome, FADE, Instance, Light, MOSS, Material, Model, Pattern, Projection, Sky, Wave};
+use crate::raster::Panorama;
 
 /// With more primitives than this the scene takes the objects inline, since `object { Name }` copies a union.
 const MOST_COPIED: usize = 1_000_000;
 /// Digits of numbers that are not lengths.
 const PLAIN: Digits = Digits(6);
-/// The text buffered before it is written.
-const BUFFER: usize = 1 << 16;
+/// Lights that stand for the sky in the studio look: more take longer, fewer show as separate shadows.
+const DOME: u32 = 96;
 
 /// Where a model came from, for the header of what is written.
 #[derive(Clone, Debug, Default)]
@@ -48,10 +49,13 @@ struct Values {
     height_pixels: u32,
     height: String,
     inline: bool,
+    extent: String,
     objects: Vec<ObjectValues>,
     materials: Vec<MaterialValues>,
     camera: CameraValues,
     lights: Vec<LightValues>,
+    /// Towards the light, and its colour: the sky of the studio look.
+    dome: Vec<[String; 2]>,
     sky: SkyValues,
     ground: Option<GroundValues>,
 }
@@ -61,6 +65,8 @@ struct ObjectValues {
     id: String,
     height: String,
     foot: String,
+    /// What follows the object where it stands, after the first, which is at its foot.
+    places: Vec<String>,
     keyword: &'static str,
     texture: String,
     body: String,
@@ -75,6 +81,18 @@ struct MaterialValues {
     emission: String,
     specular: String,
     roughness: String,
+    phong: String,
+    phong_size: String,
+    pattern: Option<PatternValues>,
+}
+
+#[derive(Serialize)]
+struct PatternValues {
+    function: String,
+    colour: String,
+    size: String,
+    /// The material's colour where it is too thin for the pattern.
+    mean: String,
 }
 
 #[derive(Serialize)]
@@ -90,6 +108,8 @@ struct CameraValues {
 struct LightValues {
     location: String,
     colour: String,
+    /// The colour in the studio look.
+    studio: String,
     parallel: bool,
     across: Option<String>,
     shadow: bool,
@@ -98,7 +118,9 @@ struct LightValues {
 #[derive(Serialize)]
 struct SkyValues {
     horizon: String,
-    zenith: String,
+    zenith: Option<String>,
+    /// How far its picture is turned, in degrees; without one it is a gradient.
+    turn: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -108,10 +130,12 @@ struct GroundValues {
     ambient: String,
     diffuse: String,
     reach: String,
+    fade: String,
+    radius: Option<String>,
 }
 
 /// POV-Ray's space from the world's: swapping y and z turns right-handed into left-handed without mirroring the shape.
-fn to_pov(p: DVec3) -> DVec3 {
+pub(super) fn to_pov(p: DVec3) -> DVec3 {
     DVec3::new(p.x, p.z, p.y)
 }
 
@@ -140,10 +164,14 @@ impl<'a> Pov<'a> {
                 _ => format!("{prefix}_{}", identifier(&object.name)),
             },
             height: number(object.height(), object.digits),
-            foot: vector(to_pov(object.foot), object.digits),
+            foot: vector(to_pov(object.instances[0].at), object.digits),
+            places: object.instances[1..].iter().map(|place| placed(place, object.digits)).collect(),
             // A union of fewer than two objects warns.
             keyword: if object.balls.len() + object.segments.len() < 2 { "object" } else { "union" },
-            texture: material_id(object.material),
+            texture: match model.materials[object.material].1.pattern {
+                Some(_) => format!("{}_Plain", material_id(object.material)),
+                None => material_id(object.material),
+            },
             body: body_mark(i),
         });
         let materials = model.materials.iter().enumerate().map(|(i, (_, m))| MaterialValues {
@@ -154,6 +182,9 @@ impl<'a> Pov<'a> {
             emission: number(m.emission, PLAIN),
             specular: number(m.specular, PLAIN),
             roughness: number(m.roughness, PLAIN),
+            phong: number(m.phong, PLAIN),
+            phong_size: number(m.phong_size, PLAIN),
+            pattern: m.pattern.as_ref().map(|pattern| pattern_values(m, pattern)),
         });
         let camera = &model.camera;
         let (kind, angle, width) = match camera.projection {
@@ -171,22 +202,47 @@ impl<'a> Pov<'a> {
             width: size[0],
             height_pixels: size[1],
             height: number(bounds.max.z.max(0.0), digits),
-            inline: model.primitives() > MOST_COPIED,
+            inline: model.primitives() > MOST_COPIED && model.objects.iter().all(|o| o.instances.len() == 1),
+            extent: number(extent * 100.0, digits),
             objects: objects.collect(),
             materials: materials.collect(),
             camera: CameraValues { kind, location: point(camera.at), look_at: point(camera.look_at), angle, width },
             lights: model.lights.iter().map(|light| light_values(light, extent, &point)).collect(),
-            sky: SkyValues { horizon: colour(model.sky.horizon), zenith: colour(model.sky.zenith) },
+            dome: Dome::new(model)
+                .lights(DOME)
+                .into_iter()
+                .map(|(towards, c)| [vector(to_pov(towards), PLAIN), colour(c)])
+                .collect(),
+            sky: SkyValues {
+                horizon: colour(model.sky.at_horizon()),
+                zenith: match &model.sky {
+                    Sky::Gradient { zenith, .. } => Some(colour(*zenith)),
+                    Sky::Picture { .. } => None,
+                },
+                turn: match &model.sky {
+                    Sky::Gradient { .. } => None,
+                    // POV-Ray's pictures begin along +x, ours end along -x.
+                    Sky::Picture { turn, .. } => Some(number(180.0 - turn, PLAIN)),
+                },
+            },
             ground: model.ground.map(|ground| GroundValues {
                 height: number(ground.height, digits),
                 colour: colour(ground.material.colour),
                 ambient: number(ground.material.ambient, PLAIN),
                 diffuse: number(ground.material.diffuse, PLAIN),
                 reach: number(ground.reach, digits),
+                fade: number(FADE, PLAIN),
+                radius: ground.radius.map(|radius| number(radius, digits)),
             }),
             prefix,
         };
         Self { model, templates, values }
+    }
+
+    /// The identifier that is 1 for the exact look, 0 for the studio's.
+    #[must_use]
+    pub fn exact(&self) -> String {
+        format!("{}_Exact", self.values.prefix)
     }
 
     /// The identifiers declared: the prefix, or one an object.
@@ -205,7 +261,9 @@ impl<'a> Pov<'a> {
             if i % 2 == 0 {
                 out.write_all(part.as_bytes())?;
             } else if let Some(object) = part.parse().ok().and_then(|i: usize| self.model.objects.get(i)) {
-                write_body(object, &mut out)?;
+                let (_, material) = &self.model.materials[object.material];
+                let texture = &self.values.materials[object.material].id;
+                write_body(object, material.pattern.as_ref(), texture, &mut out)?;
             }
         }
         Ok(())
@@ -227,6 +285,15 @@ impl<'a> Pov<'a> {
         self.fill("scene.ini")
     }
 
+    /// The picture of the sky, with its strength, that belongs beside the scene as `NAME-sky.exr`.
+    #[must_use]
+    pub fn sky(&self) -> Option<(&Panorama, f64)> {
+        match &self.model.sky {
+            Sky::Picture { picture, strength, .. } => Some((picture, *strength)),
+            Sky::Gradient { .. } => None,
+        }
+    }
+
     fn fill(&self, name: &str) -> io::Result<String> {
         self.templates
             .fill(name, &self.values)
@@ -242,58 +309,51 @@ fn light_values(light: &Light, extent: f64, point: &dyn Fn(DVec3) -> String) -> 
             LightValues {
                 location: point(towards * distance),
                 colour: colour(c),
+                studio: colour(light.studio()),
                 parallel: true,
                 across: (size > 0.0 && shadow).then(|| number(wide, PLAIN)),
                 shadow,
             }
         }
         Light::Point { at, colour: c, shadow } => {
-            LightValues { location: point(at), colour: colour(c), parallel: false, across: None, shadow }
+            let studio = colour(light.studio());
+            LightValues { location: point(at), colour: colour(c), studio, parallel: false, across: None, shadow }
         }
     }
 }
 
-/// Writes the spheres and frusta of `object`.
-fn write_body(object: &Object, out: &mut impl Write) -> io::Result<()> {
-    let digits = object.digits;
-    let scale = digits.scale();
-    let mut text = Vec::with_capacity(BUFFER + 256);
-    for ball in &object.balls {
-        text.extend_from_slice(b"sphere{");
-        push_vector(&mut text, to_pov(ball.centre), digits, scale);
-        text.push(b',');
-        push_number(&mut text, ball.radius, digits, scale);
-        text.extend_from_slice(b"}\n");
-        flush_at(&mut text, out, BUFFER)?;
+/// An object's further place, as what follows its name.
+fn placed(place: &Instance, digits: Digits) -> String {
+    let mut text = String::new();
+    if place.scale != 1.0 {
+        text.push_str(&format!("scale {} ", number(place.scale, PLAIN)));
     }
-    for &[a, b] in &object.segments {
-        let (a, b) = (&object.balls[a as usize], &object.balls[b as usize]);
-        let Some(f) = frustum(a.centre, a.radius, b.centre, b.radius) else { continue };
-        let (from, to) = (to_pov(f.a), to_pov(f.b));
-        let (ra, rb) = (digits.round(f.ra), digits.round(f.rb));
-        // A cone without length or width is fatal to the whole file.
-        if digits.round_point(from) == digits.round_point(to) || (ra == 0.0 && rb == 0.0) {
-            continue;
-        }
-        text.extend_from_slice(b"cone{");
-        push_vector(&mut text, from, digits, scale);
-        text.push(b',');
-        push_number(&mut text, ra, digits, scale);
-        text.push(b',');
-        push_vector(&mut text, to, digits, scale);
-        text.push(b',');
-        push_number(&mut text, rb, digits, scale);
-        text.extend_from_slice(b" open}\n");
-        flush_at(&mut text, out, BUFFER)?;
+    if place.turn != 0.0 {
+        // Left-handed: the other way around.
+        text.push_str(&format!("rotate {}*y ", number(-place.turn, PLAIN)));
     }
-    flush_at(&mut text, out, 1)
+    format!("{text}translate {}", vector(to_pov(place.at), digits))
 }
 
-/// Writes `text` out and empties it when it has reached `size` bytes.
-fn flush_at(text: &mut Vec<u8>, out: &mut impl Write, size: usize) -> io::Result<()> {
-    if text.len() >= size {
-        out.write_all(text)?;
-        text.clear();
+/// A pattern as POV-Ray's own functions.
+fn pattern_values(material: &Material, pattern: &Pattern) -> PatternValues {
+    let dot = |[a, b, c]: [f64; 3]| format!("{a}*x+{b}*y+{c}*z");
+    let wave = |w: &Wave| format!("sin({}+{}+{}*sin({}))", dot(w.along), w.phase, w.bend, dot(w.by));
+    let sum = |waves: &[Wave]| waves.iter().map(wave).collect::<Vec<_>>().join("+");
+    let function = match pattern {
+        Pattern::Bark { .. } => format!("max(0,1-abs({})*{})", sum(&BARK), Pattern::FISSURE),
+        Pattern::Moss { .. } => format!(
+            "min(1,max(0,({})*{}+x/max(0.000001,sqrt(x*x+z*z))*{}-{}))",
+            sum(&MOSS),
+            Pattern::PATCH[0],
+            Pattern::PATCH[1],
+            Pattern::PATCH[2]
+        ),
+    };
+    PatternValues {
+        function: function.replace("+-", "-"),
+        colour: colour(pattern.colour()),
+        size: number(pattern.size(), PLAIN),
+        mean: colour(material.mean_colour()),
     }
-    Ok(())
 }

@@ -37,17 +37,26 @@ pub fn write_svg(model: &Model, options: SvgOptions, mut out: impl Write) -> io:
     for object in &model.objects {
         let (_, material) = &model.materials[object.material];
         write!(out, r#"<path fill="{}" d=""#, ink(material))?;
-        let balls: Vec<Option<Disc>> =
-            object.balls.iter().map(|ball| view.disc(object.foot + ball.centre, ball.radius)).collect();
-        for &[a, b] in &object.segments {
-            if let (Some(a), Some(b)) = (balls[a as usize], balls[b as usize]) {
-                write_stroke(a, b, &mut out)?;
+        for place in &object.instances {
+            let disc = |p: DVec3, radius: f64| view.disc(place.to_world(p), radius * place.scale);
+            let balls: Vec<Option<Disc>> = object.balls.iter().map(|ball| disc(ball.centre, ball.radius)).collect();
+            for &[a, b] in &object.segments {
+                if let (Some(a), Some(b)) = (balls[a as usize], balls[b as usize]) {
+                    write_stroke(a, b, &mut out)?;
+                }
             }
-        }
-        // Balls within strokes are drawn with them already.
-        if object.segments.is_empty() {
-            for disc in balls.into_iter().flatten() {
-                write_stroke(disc, disc, &mut out)?;
+            // Balls within strokes are drawn with them already.
+            if object.segments.is_empty() {
+                for disc in balls.into_iter().flatten() {
+                    write_stroke(disc, disc, &mut out)?;
+                }
+            }
+            for corners in &object.mesh.triangles {
+                let [a, b, c] = corners.map(|i| disc(object.mesh.points[i as usize], 0.0));
+                if let (Some(a), Some(b), Some(c)) = (a, b, c) {
+                    let [a, b, c] = [a, b, c].map(|disc| disc.centre);
+                    writeln!(out, "M{:.2} {:.2}L{:.2} {:.2}L{:.2} {:.2}z", a.x, a.y, b.x, b.y, c.x, c.y)?;
+                }
             }
         }
         writeln!(out, r#""/>"#)?;

@@ -4,12 +4,13 @@ use std::io::{self, Cursor, Write};
 
 use image::{DynamicImage, ImageReader, Limits};
 
-use crate::raster::Grey;
+use crate::math::from_srgb;
+use crate::raster::{Channel, Grey, Layers};
 
 /// Pixels along a side of a picture that is read, at most.
-const MOST_SIDE: u32 = 32_768;
+pub(super) const MOST_SIDE: u32 = 32_768;
 /// Memory that decoding a picture may take.
-const MOST_BYTES: u64 = 2 << 30;
+pub(super) const MOST_BYTES: u64 = 2 << 30;
 
 /// A picture of 8 bits a channel, not premultiplied, row by row from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,7 +47,7 @@ impl Rgba {
     }
 }
 
-fn decode(bytes: &[u8]) -> Result<DynamicImage, String> {
+pub(super) fn decode(bytes: &[u8]) -> Result<DynamicImage, String> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
     if reader.format().is_none() {
         return Err("it is not a PNG or JPEG picture".to_owned());
@@ -80,6 +81,34 @@ pub fn decode_png(bytes: &[u8]) -> Result<Rgba, String> {
     Ok(Rgba { width, height, bytes: picture.into_raw() })
 }
 
+/// The picture in `bytes` (PNG or JPEG) as channels `R G B A` in linear light, premultiplied, with its texts.
+///
+/// # Errors
+/// As [`decode_grey`].
+pub fn decode_linear(bytes: &[u8]) -> Result<Layers, String> {
+    let picture = decode(bytes)?.into_rgba16();
+    let (width, height) = picture.dimensions();
+    let value = |v: u16| f64::from(v) / 65535.0;
+    let channels = (0..4).zip(["R", "G", "B", "A"]).map(|(i, name)| Channel {
+        name: name.to_owned(),
+        values: picture
+            .pixels()
+            .map(|p| if i == 3 { value(p.0[3]) } else { from_srgb(value(p.0[i])) * value(p.0[3]) } as f32)
+            .collect(),
+        is_half: false,
+    });
+    let channels = channels.collect();
+    Ok(Layers { width, height, channels, texts: png_texts(bytes) })
+}
+
+/// The texts of a PNG picture; none of any other.
+#[must_use]
+pub fn png_texts(bytes: &[u8]) -> Vec<(String, String)> {
+    let Ok(reader) = png::Decoder::new(Cursor::new(bytes)).read_info() else { return Vec::new() };
+    let chunks = &reader.info().utf8_text;
+    chunks.iter().filter_map(|chunk| Some((chunk.keyword.clone(), chunk.get_text().ok()?))).collect()
+}
+
 /// `picture` scaled to fit `width` by `height`, its aspect kept.
 #[must_use]
 pub fn resize(picture: &Rgba, width: u32, height: u32) -> Rgba {
@@ -91,20 +120,39 @@ pub fn resize(picture: &Rgba, width: u32, height: u32) -> Rgba {
     Rgba { width, height, bytes: scaled.into_raw() }
 }
 
-/// Writes `picture` as a PNG with sRGB colours and these texts (keyword, text).
+/// Writes `picture` as a PNG of 8 bits a channel with sRGB colours and these texts (keyword, text).
 ///
 /// # Errors
 /// What `out` says.
 pub fn encode_png(picture: &Rgba, texts: &[(&str, &str)], out: impl Write) -> io::Result<()> {
-    let mut encoder = png::Encoder::new(out, picture.width, picture.height);
+    write_png([picture.width, picture.height], png::BitDepth::Eight, &picture.bytes, texts, out)
+}
+
+/// [`encode_png`] of 16 bits a channel: four values a pixel.
+///
+/// # Errors
+/// What `out` says.
+pub fn encode_png16(size: [u32; 2], values: &[u16], texts: &[(&str, &str)], out: impl Write) -> io::Result<()> {
+    let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_be_bytes()).collect();
+    write_png(size, png::BitDepth::Sixteen, &bytes, texts, out)
+}
+
+fn write_png(
+    [width, height]: [u32; 2],
+    depth: png::BitDepth,
+    bytes: &[u8],
+    texts: &[(&str, &str)],
+    out: impl Write,
+) -> io::Result<()> {
+    let mut encoder = png::Encoder::new(out, width, height);
     encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_depth(depth);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     for (keyword, text) in texts {
         encoder.add_itxt_chunk((*keyword).to_owned(), (*text).to_owned()).map_err(io::Error::other)?;
     }
     let mut writer = encoder.write_header().map_err(io::Error::other)?;
-    writer.write_image_data(&picture.bytes).map_err(io::Error::other)?;
+    writer.write_image_data(bytes).map_err(io::Error::other)?;
     writer.finish().map_err(io::Error::other)
 }
 

@@ -137,6 +137,15 @@ impl Bounds {
         (self.min + self.max) * 0.5
     }
 
+    /// Its eight corners.
+    #[must_use]
+    pub fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|i| {
+            let pick = |bit: usize, axis: usize| if i & bit == 0 { self.min[axis] } else { self.max[axis] };
+            DVec3::new(pick(1, 0), pick(2, 1), pick(4, 2))
+        })
+    }
+
     /// Does it hold nothing?
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -5,13 +5,17 @@
 
 mod name;
 mod power;
+mod prefetch;
 mod progress;
 mod random;
+mod srgb;
 pub mod tolerance;
 
 pub use glam::{DVec2, DVec3};
 
 pub use name::{Colour, Degrees, Point, Ref, unknown};
 pub use power::power;
+pub(crate) use prefetch::prefetch;
 pub use progress::{Cancelled, Progress};
 pub use random::{Stream, mix};
+pub use srgb::{from_srgb, to_srgb};

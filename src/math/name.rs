@@ -2,6 +2,7 @@
 
 use std::marker::PhantomData;
 
+use super::{from_srgb, to_srgb};
 use glam::DVec3;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error;
@@ -9,7 +10,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use std::borrow::Cow;
 
 /// An angle in degrees, as files give it; code works in radians.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Degrees(pub f64);
 
@@ -90,18 +91,13 @@ impl Colour {
     /// The linear colour of an sRGB one of 8 bits a channel (IEC 61966-2-1).
     #[must_use]
     pub fn from_srgb(rgb: [u8; 3]) -> Self {
-        Self(rgb.map(|byte| {
-            let c = f64::from(byte) / 255.0;
-            if c <= 0.04045 { c / 12.92 } else { crate::math::power((c + 0.055) / 1.055, 2.4) }
-        }))
+        Self(rgb.map(|byte| from_srgb(f64::from(byte) / 255.0)))
     }
 
     /// The sRGB byte of a linear channel, clamped to 0 to 1.
     #[must_use]
     pub fn to_srgb(linear: f64) -> u8 {
-        let c = linear.clamp(0.0, 1.0);
-        let encoded = if c <= 0.003_130_8 { c * 12.92 } else { 1.055 * crate::math::power(c, 1.0 / 2.4) - 0.055 };
-        libm::floor(encoded * 255.0 + 0.5) as u8
+        libm::floor(to_srgb(linear) * 255.0 + 0.5) as u8
     }
 
     fn from_hex(text: &str) -> Option<Self> {

@@ -1,9 +1,13 @@
 //! Materials, lights, ground and sky.
 
+use std::sync::Arc;
+
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::math::{Colour, DVec3, Point};
+use super::Pattern;
+use crate::math::{Colour, DVec3, Degrees, Point};
+use crate::raster::Panorama;
 
 /// What an object is made of, in the terms of POV-Ray's finish.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
@@ -23,14 +27,25 @@ pub struct Material {
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1000.0))]
     pub emission: f64,
-    /// Strength of the highlight.
+    /// Strength of the highlight after Blinn.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 10.0))]
     pub specular: f64,
-    /// Size of the highlight: 0.001 is a point, 1 is all over.
+    /// Size of that highlight: 0.001 is a point, 1 is all over.
     #[serde(default = "roughness")]
     #[schemars(range(min = 0.0005, max = 1.0))]
     pub roughness: f64,
+    /// Strength of the highlight after Phong.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub phong: f64,
+    /// Sharpness of that highlight: 1 is all over, 250 is polished.
+    #[serde(default = "phong_size")]
+    #[schemars(range(min = 1.0, max = 2000.0))]
+    pub phong_size: f64,
+    /// What is drawn over the colour.
+    #[serde(default)]
+    pub pattern: Option<Pattern>,
 }
 
 fn ambient() -> f64 {
@@ -45,11 +60,38 @@ fn roughness() -> f64 {
     0.05
 }
 
+fn phong_size() -> f64 {
+    40.0
+}
+
 impl Material {
     /// A matt material of this colour.
     #[must_use]
     pub fn matt(colour: Colour) -> Self {
-        Self { colour, ambient: ambient(), diffuse: diffuse(), emission: 0.0, specular: 0.0, roughness: roughness() }
+        Self {
+            colour,
+            ambient: ambient(),
+            diffuse: diffuse(),
+            emission: 0.0,
+            specular: 0.0,
+            roughness: roughness(),
+            phong: 0.0,
+            phong_size: phong_size(),
+            pattern: None,
+        }
+    }
+
+    /// Its colour with the mean of its pattern.
+    #[must_use]
+    pub fn mean_colour(&self) -> Colour {
+        self.pattern.map_or(self.colour, |pattern| self.blend(pattern.mean()))
+    }
+
+    /// Its colour with this share of its pattern's over it.
+    #[must_use]
+    pub fn blend(&self, share: f64) -> Colour {
+        let Colour(over) = self.pattern.map_or(self.colour, |pattern| pattern.colour());
+        Colour([0, 1, 2].map(|i| self.colour.0[i] + (over[i] - self.colour.0[i]) * share))
     }
 
     /// Drawing ink: its own colour under every light.
@@ -118,6 +160,19 @@ pub enum Light {
     },
 }
 
+impl Light {
+    /// A sun in the studio look is this much stronger than in the exact one, where constant light adds to it.
+    const SUN: f64 = 1.35;
+
+    /// Its colour in the studio look: lights without shadow are left out, since the sky takes their place.
+    #[must_use]
+    pub fn studio(&self) -> Colour {
+        let (Self::Sun { colour: Colour(colour), shadow, .. } | Self::Point { colour: Colour(colour), shadow, .. }) =
+            *self;
+        Colour(colour.map(|x| if shadow { x * Self::SUN } else { 0.0 }))
+    }
+}
+
 /// A level ground.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -128,6 +183,10 @@ pub struct GroundSpec {
     #[serde(default)]
     #[schemars(range(min = -1e6, max = 1e6))]
     pub height: f64,
+    /// A round ground of this radius about the origin; without it the ground goes on, and fades into the horizon.
+    #[serde(default)]
+    #[schemars(range(min = 1e-3, max = 1e6))]
+    pub radius: Option<f64>,
 }
 
 /// A level ground in world space.
@@ -139,14 +198,98 @@ pub struct Ground {
     pub height: f64,
     /// Distance from the origin where it has faded into the horizon.
     pub reach: f64,
+    /// Where it ends, if it does; it then does not fade.
+    pub radius: Option<f64>,
 }
 
-/// What is behind everything: a gradient from the horizon up.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Sky {
-    /// Colour at the horizon and below.
-    pub horizon: Colour,
-    /// Colour overhead.
-    pub zenith: Colour,
+impl Ground {
+    /// The share of the ground at `p`: less than 1 where it fades into the horizon.
+    #[must_use]
+    pub fn share(&self, p: DVec3) -> f64 {
+        match self.radius {
+            Some(_) => 1.0,
+            None => ((1.0 - (p / self.reach).length()).max(0.0) / FADE).min(1.0),
+        }
+    }
+}
+
+/// A ground fades from full to nothing over this share of its reach, from the outside.
+pub const FADE: f64 = 0.7;
+
+/// What is behind everything, as a scene writes it: one colour, a gradient, or a picture.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct SkySpec {
+    /// One colour all over.
+    pub colour: Option<Colour>,
+    /// Of a gradient: colour at the horizon and below.
+    pub horizon: Option<Colour>,
+    /// Of a gradient: colour overhead.
+    pub zenith: Option<Colour>,
+    /// An equirectangular picture of all directions (EXR or Radiance HDR), beside the scene.
+    pub file: Option<String>,
+    /// How far the picture is turned about the vertical.
+    pub turn: Degrees,
+    /// The picture's light times this.
+    #[schemars(range(min = 0.0, max = 1000.0))]
+    pub strength: Option<f64>,
+}
+
+/// What is behind everything.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Sky {
+    /// From one colour at the horizon and below to another overhead, even in z.
+    Gradient {
+        /// At the horizon and below.
+        horizon: Colour,
+        /// Overhead.
+        zenith: Colour,
+    },
+    /// A picture of all directions.
+    Picture {
+        /// The picture.
+        picture: Arc<Panorama>,
+        /// Angle about the vertical, in degrees.
+        turn: f64,
+        /// Its light times this.
+        strength: f64,
+    },
+}
+
+impl Sky {
+    /// The same colour all over.
+    #[must_use]
+    pub fn plain(colour: Colour) -> Self {
+        Self::Gradient { horizon: colour, zenith: colour }
+    }
+
+    /// The colour in a direction, of length 1.
+    #[must_use]
+    pub fn colour(&self, direction: DVec3) -> Colour {
+        match self {
+            Self::Gradient { horizon: Colour(a), zenith: Colour(b) } => {
+                let t = direction.z.max(0.0);
+                Colour([0, 1, 2].map(|i| a[i] + (b[i] - a[i]) * t))
+            }
+            Self::Picture { picture, turn, strength } => {
+                let turn = Degrees(*turn).radians();
+                let (sin, cos) = (libm::sin(turn), libm::cos(turn));
+                let d = DVec3::new(
+                    direction.x * cos + direction.y * sin,
+                    direction.y * cos - direction.x * sin,
+                    direction.z,
+                );
+                Colour(picture.at(d).map(|x| x * strength))
+            }
+        }
+    }
+
+    /// The colour that a ground fades into.
+    #[must_use]
+    pub fn at_horizon(&self) -> Colour {
+        match self {
+            Self::Gradient { horizon, .. } => *horizon,
+            Self::Picture { picture, strength, .. } => Colour(picture.horizon().map(|x| x * strength)),
+        }
+    }
 }

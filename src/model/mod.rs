@@ -5,12 +5,16 @@
 
 mod appearance;
 mod camera;
+mod dome;
 mod object;
+mod pattern;
 mod skin;
 
-pub use appearance::{Ground, GroundSpec, Light, LightSpec, Material, Sky};
+pub use appearance::{FADE, Ground, GroundSpec, Light, LightSpec, Material, Sky, SkySpec};
 pub use camera::{Camera, CameraSpec, Projected, Projection};
-pub use object::{Ball, Digits, Object};
+pub use dome::Dome;
+pub use object::{Ball, Digits, Instance, Mesh, Object};
+pub use pattern::{BARK, Frame, MOSS, Pattern, Wave, limb_frames};
 pub use skin::{Skin, SkinError};
 
 use crate::geom::Bounds;
@@ -47,10 +51,10 @@ impl Model {
         self.objects.iter().map(Object::bounds).fold(Bounds::EMPTY, Bounds::union)
     }
 
-    /// How many spheres and cones there are.
+    /// How many spheres, cones and triangles there are, once for each object.
     #[must_use]
     pub fn primitives(&self) -> usize {
-        self.objects.iter().map(|o| o.balls.len() + o.segments.len()).sum()
+        self.objects.iter().map(Object::primitives).sum()
     }
 }
 

@@ -1,7 +1,7 @@
-//! Objects: balls and the limbs between them.
+//! Objects: balls and the limbs between them, or a mesh; and where they stand.
 
 use crate::geom::Bounds;
-use crate::math::DVec3;
+use crate::math::{DVec3, Degrees};
 
 /// A sphere with what was known of its place in the skeleton.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,34 +18,111 @@ pub struct Ball {
     pub level: u16,
 }
 
-/// What a scene declares as one thing: balls, and round cones between pairs of them.
+/// Triangles.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Corners, from the object's foot.
+    pub points: Vec<DVec3>,
+    /// A unit normal a corner, for smooth shading; empty for flat triangles.
+    pub normals: Vec<DVec3>,
+    /// Three corners each.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// A place where an object stands: first scaled, then turned, then moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instance {
+    /// Where its foot is in the world.
+    pub at: DVec3,
+    /// Angle about the vertical, counterclockwise seen from above, in degrees.
+    pub turn: f64,
+    /// Its size over the declared one, above 0.
+    pub scale: f64,
+}
+
+impl Instance {
+    /// Neither turned nor scaled.
+    #[must_use]
+    pub fn at(at: DVec3) -> Self {
+        Self { at, turn: 0.0, scale: 1.0 }
+    }
+
+    /// A direction in the world from the object's own.
+    #[must_use]
+    pub fn turned(&self, d: DVec3) -> DVec3 {
+        if self.turn == 0.0 {
+            return d;
+        }
+        let turn = Degrees(self.turn).radians();
+        let (sin, cos) = (libm::sin(turn), libm::cos(turn));
+        DVec3::new(d.x * cos - d.y * sin, d.x * sin + d.y * cos, d.z)
+    }
+
+    /// A direction in the object's own space from the world's.
+    #[must_use]
+    pub fn unturned(&self, d: DVec3) -> DVec3 {
+        Self { turn: -self.turn, ..*self }.turned(d)
+    }
+
+    /// A point in the world from the object's own.
+    #[must_use]
+    pub fn to_world(&self, p: DVec3) -> DVec3 {
+        self.at + self.turned(p * self.scale)
+    }
+
+    /// A point in the object's own space from the world's.
+    #[must_use]
+    pub fn to_object(&self, p: DVec3) -> DVec3 {
+        self.unturned(p - self.at) / self.scale
+    }
+}
+
+/// What a scene declares as one thing: balls, and round cones between pairs of them; or a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
     /// Its name in the scene.
     pub name: String,
-    /// Where its foot stands in the world.
-    pub foot: DVec3,
+    /// Where it stands, one or more times.
+    pub instances: Vec<Instance>,
     /// Index of its material.
     pub material: usize,
     /// Spheres, from the foot.
     pub balls: Vec<Ball>,
-    /// Pairs of balls joined by the frustum tangent to both ([`crate::geom::frustum`]).
+    /// Pairs of balls joined by the frustum tangent to both ([`crate::geom::frustum`]): from the root's side, outwards.
     pub segments: Vec<[u32; 2]>,
+    /// Triangles.
+    pub mesh: Mesh,
     /// Digits behind the point of all its numbers.
     pub digits: Digits,
 }
 
 impl Object {
+    /// Every ball, and every corner of its mesh as a ball without size, wherever it stands: centre, radius.
+    pub fn balls_in_world(&self) -> impl Iterator<Item = (DVec3, f64)> + Clone {
+        self.instances.iter().flat_map(move |place| {
+            let balls = self.balls.iter().map(|b| (b.centre, b.radius));
+            let corners = self.mesh.points.iter().map(|&p| (p, 0.0));
+            balls.chain(corners).map(|(p, radius)| (place.to_world(p), radius * place.scale))
+        })
+    }
+
     /// A box around it in the world.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
-        self.balls.iter().map(|b| Bounds::of_ball(self.foot + b.centre, b.radius)).fold(Bounds::EMPTY, Bounds::union)
+        self.balls_in_world().map(|(p, radius)| Bounds::of_ball(p, radius)).fold(Bounds::EMPTY, Bounds::union)
     }
 
-    /// How far it reaches above its foot.
+    /// How far it reaches above its foot, as declared.
     #[must_use]
     pub fn height(&self) -> f64 {
-        self.balls.iter().map(|b| b.centre.z + b.radius).fold(0.0, f64::max)
+        let balls = self.balls.iter().map(|b| b.centre.z + b.radius);
+        balls.chain(self.mesh.points.iter().map(|p| p.z)).fold(0.0, f64::max)
+    }
+
+    /// How many spheres, cones and triangles there are, once each.
+    #[must_use]
+    pub fn primitives(&self) -> usize {
+        self.balls.len() + self.segments.len() + self.mesh.triangles.len()
     }
 }
 

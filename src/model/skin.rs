@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Ball, Digits, Object, to_world};
+use super::{Ball, Digits, Instance, Mesh, Object, to_world};
 use crate::math::{DVec3, tolerance::INVISIBLE_RADIUS};
 use crate::skeleton::{Skeleton, overlap};
 
@@ -29,7 +29,7 @@ pub enum Skin {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SkinError {
     /// Nothing would be seen.
-    #[error("its steps have no paths: nothing is left to show")]
+    #[error("nothing is left to show: its steps have no paths, or its mesh no triangles")]
     Empty,
     /// Too much to write and render.
     #[error("{0} primitives are more than {MOST_PRIMITIVES}: use fewer endpoints, or cones in place of spheres")]
@@ -37,6 +37,41 @@ pub enum SkinError {
     /// Too small or too large for renderers.
     #[error("its size is out of the range that renderers show, 0.001 to 1e7 scene units: change the spacing")]
     Size,
+}
+
+impl Object {
+    /// The object that `mesh` is, moved by `offset`; its foot is its origin.
+    ///
+    /// # Errors
+    /// [`SkinError`].
+    pub fn of_mesh(name: &str, mesh: &Mesh, offset: DVec3, material: usize) -> Result<Self, SkinError> {
+        if mesh.triangles.is_empty() {
+            return Err(SkinError::Empty);
+        }
+        if mesh.triangles.len() > MOST_PRIMITIVES {
+            return Err(SkinError::TooMany(mesh.triangles.len()));
+        }
+        let size = mesh.points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+        if !(1e-3..=1e7).contains(&size) {
+            return Err(SkinError::Size);
+        }
+        let digits = Digits::for_size(size);
+        let unit = Digits(6);
+        let mesh = Mesh {
+            points: mesh.points.iter().map(|&p| digits.round_point(p)).collect(),
+            normals: mesh.normals.iter().map(|&n| unit.round_point(n)).collect(),
+            triangles: mesh.triangles.clone(),
+        };
+        Ok(Self {
+            name: name.to_owned(),
+            instances: vec![Instance::at(digits.round_point(offset))],
+            material,
+            balls: Vec::new(),
+            segments: Vec::new(),
+            mesh,
+            digits,
+        })
+    }
 }
 
 impl Skin {
@@ -77,10 +112,11 @@ impl Skin {
 
         let mut object = Object {
             name: name.to_owned(),
-            foot: digits.round_point(to_world(root + offset, is_flat)),
+            instances: vec![Instance::at(digits.round_point(to_world(root + offset, is_flat)))],
             material,
             balls: Vec::with_capacity(count),
             segments: Vec::new(),
+            mesh: Mesh::default(),
             digits,
         };
         let mut branches = 0;

@@ -67,6 +67,6 @@ impl Cells {
 
     #[inline(always)]
     pub fn prefetch(&self, cell: usize) {
-        super::prefetch::prefetch(&self.cells, cell);
+        crate::math::prefetch(&self.cells, cell);
     }
 }

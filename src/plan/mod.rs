@@ -6,7 +6,6 @@
 mod buckets;
 mod cells;
 mod front;
-mod prefetch;
 mod search;
 #[cfg(test)]
 mod search_tests;

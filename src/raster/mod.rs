@@ -3,5 +3,11 @@
 //! Later stages need never handle a picture without pixels or a buffer of the wrong length.
 
 mod grey;
+mod layers;
+mod panorama;
+mod tone;
 
 pub use grey::Grey;
+pub use layers::{Channel, Layers};
+pub use panorama::Panorama;
+pub use tone::filmic;

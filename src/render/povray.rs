@@ -15,12 +15,16 @@ const POLL: Duration = Duration::from_millis(50);
 const WORDS: usize = 12;
 
 /// How POV-Ray is to render.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Povray {
     /// Size of the picture, in pixels.
     pub size: [u32; 2],
-    /// Smooth edges, by adaptive supersampling.
-    pub antialias: bool,
+    /// The part that is rendered: left, top, width, height, in pixels; the rest stays black.
+    pub crop: [u32; 4],
+    /// Samples along each side of a pixel, 1 for its middle alone.
+    pub samples: u32,
+    /// What the scene declares on the command line, as `Name=1`.
+    pub declare: Option<String>,
     /// Threads; `None` leaves the choice to POV-Ray.
     pub threads: Option<usize>,
 }
@@ -87,10 +91,19 @@ impl Povray {
             .args([format!("+W{width}"), format!("+H{height}")])
             // No display, no pause; progress; no streams but errors and warnings.
             .args(["-D", "-P", "+V", "-GR", "-GS", "-GD", "+FN8"]);
-        if self.antialias {
-            command.args(["+A0.1", "+AM2", "+R3", "-J"]);
+        let [left, top, across, down] = self.crop;
+        if self.crop != [0, 0, width, height] {
+            // From 1, and to the last.
+            command.args([format!("+SC{}", left + 1), format!("+EC{}", left + across)]);
+            command.args([format!("+SR{}", top + 1), format!("+ER{}", top + down)]);
+        }
+        if self.samples > 1 {
+            command.args(["+A0.0".to_owned(), "+AM1".to_owned(), format!("+R{}", self.samples), "-J".to_owned()]);
         } else {
             command.arg("-A");
+        }
+        if let Some(declare) = &self.declare {
+            command.arg(format!("Declare={declare}"));
         }
         if let Some(threads) = self.threads {
             command.arg(format!("+WT{threads}"));

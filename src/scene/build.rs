@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::{Resolved, SceneError};
 use crate::grow::{GrowError, Grown, Mark, MarkKind};
 use crate::math::{Cancelled, DVec3, Progress};
-use crate::model::{Camera, Ground, Material, Model, to_world};
+use crate::model::{Camera, Ground, Instance, Material, Model, Object, to_world};
 
 /// The ground has faded into the horizon at this many times the camera's distance or the scene's size.
 const GROUND_REACH: f64 = 2.5;
@@ -63,10 +63,16 @@ pub fn model(scene: &Resolved, grown: &[Grown], size: [u32; 2]) -> Result<Model,
     let mut objects = Vec::new();
     for plan in &scene.objects {
         let skeletons: Vec<_> = plan.steps.iter().map(|&step| &grown[step].skeleton).collect();
-        let object = plan
-            .skin
-            .dress(&plan.name, &skeletons, scene.is_flat, plan.at, plan.material)
-            .map_err(|error| scene.error(&format!("object.{}", plan.name), error.to_string()))?;
+        let object = match &plan.mesh {
+            Some(mesh) => Object::of_mesh(&plan.name, mesh, plan.at, plan.material),
+            None => plan.skin.dress(&plan.name, &skeletons, scene.is_flat, plan.at, plan.material),
+        };
+        let mut object = object.map_err(|error| scene.error(&format!("object.{}", plan.name), error.to_string()))?;
+        let (first, digits) = (object.instances[0].at, object.digits);
+        object.instances.extend(plan.copies.iter().map(|copy| Instance {
+            at: digits.round_point(first + to_world(copy.at - plan.at, scene.is_flat)),
+            ..*copy
+        }));
         objects.push(object);
     }
     // Marks move with the object that shows their step; steps that no object shows stay where they are.
@@ -79,7 +85,7 @@ pub fn model(scene: &Resolved, grown: &[Grown], size: [u32; 2]) -> Result<Model,
         }));
     }
     let aspect = f64::from(size[0]) / f64::from(size[1]);
-    let balls = objects.iter().flat_map(|o| o.balls.iter().map(|b| (o.foot + b.centre, b.radius)));
+    let balls = objects.iter().flat_map(Object::balls_in_world);
     let drawn = marks.iter().flat_map(|m| m.line.iter().map(|&p| (p, 0.0)));
     let camera =
         Camera::new(&scene.camera, aspect, balls.chain(drawn)).map_err(|message| scene.error("camera", message))?;
@@ -91,7 +97,7 @@ pub fn model(scene: &Resolved, grown: &[Grown], size: [u32; 2]) -> Result<Model,
         camera,
         lights: scene.lights.clone(),
         ground: None,
-        sky: scene.sky,
+        sky: scene.sky.clone(),
         marks,
     };
     let extent = model.bounds().size().max_element().max((camera.at - camera.look_at).length());
@@ -99,6 +105,7 @@ pub fn model(scene: &Resolved, grown: &[Grown], size: [u32; 2]) -> Result<Model,
         material: Material::matt(ground.colour),
         height: ground.height,
         reach: extent * GROUND_REACH,
+        radius: ground.radius,
     });
     Ok(model)
 }

@@ -9,8 +9,8 @@ use super::tree::Entry;
 use super::{Claim, Mistake};
 use crate::geom::ShapeSpec;
 use crate::grow::{MarkKind, SpaceSpec, Step, StepSpec};
-use crate::math::{Point, Ref};
-use crate::model::{CameraSpec, GroundSpec, LightSpec, Material, Skin, Sky};
+use crate::math::{Degrees, Point, Ref};
+use crate::model::{CameraSpec, GroundSpec, LightSpec, Material, Skin, SkySpec};
 
 /// A scene: named growth steps in named spaces, the objects that they become, and how these are seen.
 ///
@@ -64,7 +64,7 @@ pub struct Scene {
     pub ground: Option<GroundSpec>,
     /// What is behind everything; by default white for flat scenes, a pale sky in space.
     #[serde(default)]
-    pub sky: Option<Sky>,
+    pub sky: Option<SkySpec>,
     /// What the scene claims of its steps, as numbers that `check` and the tests read, by name.
     #[serde(default)]
     pub claim: BTreeMap<String, Claim>,
@@ -78,8 +78,12 @@ pub struct ObjectSpec {
     #[serde(default)]
     pub like: Option<Ref<Self>>,
     /// The steps that it is made of.
-    #[schemars(length(min = 1))]
+    #[serde(default)]
     pub grow: Vec<Ref<Step>>,
+    /// In place of steps: a mesh from a Wavefront OBJ file beside the scene, y up as usual there; smooth where it has
+    /// normals.
+    #[serde(default)]
+    pub mesh: Option<String>,
     /// How skeletons become solid.
     #[serde(default)]
     pub skin: Skin,
@@ -89,6 +93,28 @@ pub struct ObjectSpec {
     /// How far it is moved from where it grew.
     #[serde(default)]
     pub at: Option<Point>,
+    /// Where else it stands: instances, which take next to no memory.
+    #[serde(default)]
+    pub copies: Vec<CopySpec>,
+}
+
+/// A further place where an object stands.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CopySpec {
+    /// How far it is moved from where it grew.
+    pub at: Point,
+    /// Angle about the vertical through its foot, counterclockwise from above.
+    #[serde(default)]
+    pub turn: Degrees,
+    /// Its size over the first one's.
+    #[serde(default = "whole")]
+    #[schemars(range(min = 1e-3, max = 1e3))]
+    pub scale: f64,
+}
+
+fn whole() -> f64 {
+    1.0
 }
 
 fn first_edition() -> u32 {

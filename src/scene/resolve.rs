@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::tree::Entry;
 use super::{Claim, Mistake, ObjectSpec, Scene, SceneError, Source};
-use crate::files::{Folder, decode_grey, decode_sketch};
+use crate::files::{Folder, decode_grey, decode_obj, decode_panorama, decode_sketch};
 use crate::geom::{Bounds, Shape, ShapeSpec, Strokes};
 use crate::graph::{CostField, FieldSpec, FieldUse, HeightEnd, Measure, MeasureSpec};
 use crate::grow::{
@@ -13,7 +13,7 @@ use crate::grow::{
     SpaceSpec, Step, StepSpec,
 };
 use crate::math::{Colour, DVec2, DVec3, Degrees, Point, Ref, unknown};
-use crate::model::{CameraSpec, GroundSpec, Light, LightSpec, Material, Skin, Sky};
+use crate::model::{CameraSpec, GroundSpec, Instance, Light, LightSpec, Material, Mesh, Skin, Sky, SkySpec};
 
 /// A scene whose names and files are resolved.
 #[derive(Clone, Debug)]
@@ -53,14 +53,18 @@ pub struct Resolved {
 pub struct ObjectPlan {
     /// Its name.
     pub name: String,
-    /// Its steps, as indices of [`Resolved::steps`].
+    /// Its steps, as indices of [`Resolved::steps`]; none where it is a mesh.
     pub steps: Vec<usize>,
+    /// A mesh in place of steps, in scene space.
+    pub mesh: Option<Mesh>,
     /// How skeletons become solid.
     pub skin: Skin,
     /// Index of its material in [`Resolved::materials`].
     pub material: usize,
     /// How far it is moved, in scene space.
     pub at: DVec3,
+    /// Where else it stands; their `at` is how far it is moved.
+    pub copies: Vec<Instance>,
 }
 
 impl Resolved {
@@ -126,7 +130,9 @@ pub(super) fn resolve(scene: Scene, source: &Source, tree: &Entry, mistakes: &mu
     let [plain, flat] =
         [CameraSpec::default(), CameraSpec { rise: Degrees(0.0), angle: Degrees(0.0), ..CameraSpec::default() }];
     let white = Colour([1.0; 3]);
-    let pale = Sky { horizon: Colour([0.78, 0.84, 0.88]), zenith: Colour([0.25, 0.43, 0.68]) };
+    let pale = Sky::Gradient { horizon: Colour([0.78, 0.84, 0.88]), zenith: Colour([0.25, 0.43, 0.68]) };
+    let sky =
+        scene.sky.as_ref().map_or_else(|| Some(if is_flat { Sky::plain(white) } else { pale }), |spec| r.sky(spec));
     Some(Resolved {
         is_flat,
         steps: steps.into_iter().collect::<Option<_>>()?,
@@ -134,7 +140,7 @@ pub(super) fn resolve(scene: Scene, source: &Source, tree: &Entry, mistakes: &mu
         materials,
         camera: scene.camera.unwrap_or(if is_flat { flat } else { plain }),
         lights,
-        sky: scene.sky.unwrap_or(if is_flat { Sky { horizon: white, zenith: white } } else { pale }),
+        sky: sky?,
         source: source.clone(),
         tree: tree.clone(),
         title: scene.title,
@@ -367,6 +373,17 @@ impl Resolver<'_> {
             .enumerate()
             .map(|(i, step)| self.find(&format!("{place}.grow.{i}"), "step", step, self.scene.grow.keys()))
             .collect();
+        if spec.grow.is_empty() == spec.mesh.is_none() {
+            self.wrong(&place, "an object has either steps (`grow`) or a `mesh`".to_owned());
+        }
+        let mesh = match &spec.mesh {
+            Some(file) => {
+                let read = self.folder.read(file);
+                let mesh = read.and_then(|b| decode_obj(&b).map_err(|error| format!("cannot read `{file}`: {error}")));
+                self.note(&format!("{place}.mesh"), mesh).map(Some)
+            }
+            None => Some(None),
+        };
         let names = materials.iter().map(|(name, _)| name);
         let material = match &spec.material {
             Some(material) => self.find(&format!("{place}.material"), "material", material, names)?,
@@ -375,10 +392,43 @@ impl Resolver<'_> {
         Some(ObjectPlan {
             name: name.to_owned(),
             steps: steps.into_iter().collect::<Option<_>>()?,
+            mesh: mesh?,
             skin: spec.skin,
             material,
             at: spec.at.map_or(DVec3::ZERO, |p| p.0),
+            copies: spec
+                .copies
+                .iter()
+                .map(|copy| Instance { at: copy.at.0, turn: copy.turn.0, scale: copy.scale })
+                .collect(),
         })
+    }
+
+    fn sky(&mut self, spec: &SkySpec) -> Option<Sky> {
+        let gradient = spec.horizon.is_some() || spec.zenith.is_some();
+        match (spec.colour, gradient, &spec.file) {
+            (Some(colour), false, None) => Some(Sky::plain(colour)),
+            (None, true, None) => {
+                let (Some(horizon), Some(zenith)) = (spec.horizon, spec.zenith) else {
+                    self.wrong("sky", "a gradient needs both `horizon` and `zenith`".to_owned());
+                    return None;
+                };
+                Some(Sky::Gradient { horizon, zenith })
+            }
+            (None, false, Some(file)) => {
+                let picture = self
+                    .folder
+                    .read(file)
+                    .and_then(|b| decode_panorama(&b).map_err(|error| format!("cannot read `{file}`: {error}")));
+                let picture = Arc::new(self.note("sky.file", picture)?);
+                Some(Sky::Picture { picture, turn: spec.turn.0, strength: spec.strength.unwrap_or(1.0) })
+            }
+            _ => {
+                let message = "a sky has exactly one of `colour`, `horizon` with `zenith`, and `file`";
+                self.wrong("sky", message.to_owned());
+                None
+            }
+        }
     }
 
     fn lights(&mut self, is_flat: bool) -> Vec<Light> {

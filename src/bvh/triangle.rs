@@ -1,0 +1,88 @@
+//! Triangles, seen from both sides.
+
+use fearless_simd::{Select, Simd, SimdBase, f32x8};
+
+use super::queries::Block;
+use super::tree::Beam;
+use super::{Primitive, Ray};
+use crate::math::DVec3;
+
+/// Three corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Triangle(pub [DVec3; 3]);
+
+impl Triangle {
+    /// Distance along the ray where it meets the plane of the triangle, and the weights of the second and third
+    /// corner there (Moeller and Trumbore 1997), in double precision; `None` where they are parallel.
+    #[must_use]
+    pub fn meet(&self, ray: &Ray) -> Option<(f64, [f64; 2])> {
+        let [a, b, c] = self.0;
+        let (e1, e2) = (b - a, c - a);
+        let p = ray.direction.cross(e2);
+        let det = e1.dot(p);
+        if det == 0.0 {
+            return None;
+        }
+        let o = ray.origin - a;
+        let q = o.cross(e1);
+        Some((e2.dot(q) / det, [o.dot(p) / det, ray.direction.dot(q) / det]))
+    }
+
+    /// The unit normal by the order of the corners; zero where there is no area.
+    #[must_use]
+    pub fn normal(&self) -> DVec3 {
+        let [a, b, c] = self.0;
+        (b - a).cross(c - a).normalize_or_zero()
+    }
+}
+
+#[inline(always)]
+fn dot<S: Simd>(a: [f32x8<S>; 3], b: [f32x8<S>; 3]) -> f32x8<S> {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn cross<S: Simd>(a: [f32x8<S>; 3], b: [f32x8<S>; 3]) -> [f32x8<S>; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[inline(always)]
+fn sub<S: Simd>(a: [f32x8<S>; 3], b: [f32x8<S>; 3]) -> [f32x8<S>; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+impl Primitive<9> for Triangle {
+    fn pack(&self) -> Option<[f32; 9]> {
+        let mut p = [0.0; 9];
+        for (to, x) in p.iter_mut().zip(self.0.iter().flat_map(DVec3::to_array)) {
+            *to = x as f32;
+        }
+        (p.iter().all(|x: &f32| x.is_finite()) && self.normal() != DVec3::ZERO).then_some(p)
+    }
+
+    fn bounds(p: &[f32; 9]) -> [[f32; 3]; 2] {
+        let axes = [0, 1, 2];
+        [axes.map(|i| p[i].min(p[i + 3]).min(p[i + 6])), axes.map(|i| p[i].max(p[i + 3]).max(p[i + 6]))]
+    }
+
+    #[inline(always)]
+    fn enter<S: Simd>(beam: &Beam<S>, block: &Block<9>) -> f32x8<S> {
+        let simd = beam.simd;
+        // Edge functions from the ray's own origin (Woop et al. 2013 without the shear): neighbours that share an
+        // edge compute it alike, so that no ray slips between them.
+        let a = sub(block.point(simd, 0), beam.origin);
+        let b = sub(block.point(simd, 3), beam.origin);
+        let c = sub(block.point(simd, 6), beam.origin);
+        let d = beam.direction;
+        let zero = f32x8::splat(simd, 0.0);
+        let u = dot(cross(c, b), d);
+        let v = dot(cross(a, c), d);
+        let w = dot(cross(b, a), d);
+        let front = u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero);
+        let back = u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero);
+        let n = cross(sub(b, a), sub(c, a));
+        let t = dot(n, a) / dot(n, d);
+        let met = (front | back) & t.simd_gt(f32x8::splat(simd, beam.near));
+        met.select(t, f32x8::splat(simd, f32::INFINITY))
+    }
+}

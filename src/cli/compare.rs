@@ -1,0 +1,315 @@
+//! `compare`: have pictures changed?
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+use serde::Deserialize;
+
+use super::args::CompareArgs;
+use super::console::Console;
+use super::error::Failure;
+use crate::compare::{Metric, Outcome, Pair, Panel, changes, html, junit, measure, summary};
+use crate::files::{Rgba, decode_exr, decode_linear, encode_png, write_bytes};
+use crate::math::to_srgb;
+use crate::raster::{Layers, filmic};
+
+/// Thresholds in a folder of expected pictures.
+const CONFIG: &str = "compare.toml";
+
+/// What `compare.toml` may say.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Config {
+    /// What decides.
+    metric: Option<Metric>,
+    /// Above this pictures differ.
+    threshold: Option<f64>,
+    /// By name of the picture within the folder.
+    file: BTreeMap<String, FileConfig>,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct FileConfig {
+    metric: Option<Metric>,
+    threshold: Option<f64>,
+}
+
+/// A pair of files, with the name that both have.
+struct Files {
+    name: String,
+    expected: PathBuf,
+    actual: PathBuf,
+}
+
+pub fn run(args: &CompareArgs, console: &Console) -> Result<(), Failure> {
+    if args.update && !args.force && std::env::var("CI").is_ok_and(|v| v == "true" || v == "1") {
+        return Err(Failure::Usage("--update is refused where CI=true, since nobody looks: add --force".to_owned()));
+    }
+    let config = read_config(args)?;
+    let files = find(args)?;
+    if files.is_empty() {
+        return Err(Failure::Usage(format!("{} has no pictures (.png, .exr)", args.expected.display())));
+    }
+    let wants_panels = args.html.is_some();
+    let results: Vec<(Pair, Panel, Option<Rgba>)> =
+        files.par_iter().map(|files| compare(args, &config, files, wants_panels)).collect();
+    let pairs: Vec<Pair> = results.iter().map(|(pair, ..)| pair.clone()).collect();
+    for (pair, files) in pairs.iter().zip(&files) {
+        say(pair, files, console);
+    }
+    if let Some(folder) = &args.diff {
+        for (pair, _, difference) in &results {
+            if let Some(picture) = difference.as_ref().filter(|_| !pair.is_same()) {
+                let path = folder.join(Path::new(&pair.name).with_extension("flip.png"));
+                let png = png(picture);
+                write_bytes(&path, &png).map_err(|e| Failure::file("write", &path, &e))?;
+            }
+        }
+    }
+    if let Some(path) = &args.junit {
+        write_bytes(path, junit(&pairs).as_bytes()).map_err(|e| Failure::file("write", path, &e))?;
+    }
+    if let Some(path) = &args.html {
+        let panels: Vec<(Pair, Panel)> = results.into_iter().map(|(pair, panel, _)| (pair, panel)).collect();
+        write_bytes(path, html(&panels).as_bytes()).map_err(|e| Failure::file("write", path, &e))?;
+    }
+    write_step_summary(&pairs)?;
+    if !console.json {
+        console.line(&summary(&pairs));
+    }
+    let failed = pairs.iter().filter(|pair| pair.outcome == Outcome::Failed).count();
+    if args.update {
+        return update(&pairs, &files, console);
+    }
+    if failed > 0 {
+        return Err(Failure::Usage(format!("{} could not be compared", pictures(failed))));
+    }
+    match pairs.iter().filter(|pair| !pair.is_same()).count() {
+        0 => Ok(()),
+        count => Err(Failure::No(format!("not as expected: {}", pictures(count)))),
+    }
+}
+
+fn read_config(args: &CompareArgs) -> Result<Config, Failure> {
+    let path = match &args.config {
+        Some(path) => path.clone(),
+        None => args.expected.join(CONFIG),
+    };
+    match fs::read_to_string(&path) {
+        Ok(text) => toml::from_str(&text).map_err(|e| Failure::Usage(format!("{}: {e}", path.display()))),
+        Err(_) if args.config.is_none() => Ok(Config::default()),
+        Err(error) => Err(Failure::file("read", &path, &error)),
+    }
+}
+
+/// The pairs: two files, or what both folders hold.
+fn find(args: &CompareArgs) -> Result<Vec<Files>, Failure> {
+    let (expected, actual) = (&args.expected, &args.actual);
+    if expected.is_dir() != actual.is_dir() && expected.exists() && actual.exists() {
+        return Err(Failure::Usage("compare takes two pictures or two folders, not one of each".to_owned()));
+    }
+    if !expected.is_dir() && !actual.is_dir() {
+        let name = expected.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+        if !actual.exists() && !expected.exists() {
+            return Err(Failure::Usage(format!("there is neither {} nor {}", expected.display(), actual.display())));
+        }
+        return Ok(vec![Files { name, expected: expected.clone(), actual: actual.clone() }]);
+    }
+    let mut names = BTreeSet::new();
+    for folder in [expected, actual] {
+        if folder.exists() {
+            list(folder, Path::new(""), &mut names).map_err(|e| Failure::file("read", folder, &e))?;
+        }
+    }
+    Ok(names
+        .into_iter()
+        .map(|name| Files { expected: expected.join(&name), actual: actual.join(&name), name })
+        .collect())
+}
+
+/// The pictures below `folder`, by their paths within it, with `/`.
+fn list(folder: &Path, within: &Path, names: &mut BTreeSet<String>) -> std::io::Result<()> {
+    for entry in fs::read_dir(folder.join(within))? {
+        let entry = entry?;
+        let path = within.join(entry.file_name());
+        if entry.file_type()?.is_dir() {
+            list(folder, &path, names)?;
+        } else if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png") || e.eq_ignore_ascii_case("exr")) {
+            names.insert(path.to_string_lossy().replace('\\', "/"));
+        }
+    }
+    Ok(())
+}
+
+/// Compares a pair; the difference in colours where there is one.
+fn compare(args: &CompareArgs, config: &Config, files: &Files, wants_panel: bool) -> (Pair, Panel, Option<Rgba>) {
+    let own = config.file.get(&files.name).copied().unwrap_or_default();
+    let metric = args.metric.map(Metric::from).or(own.metric).or(config.metric).unwrap_or_default();
+    // A threshold belongs to the metric that it was given with.
+    let threshold = args.threshold.or(own.threshold).or(config.threshold).unwrap_or_else(|| metric.threshold());
+    let mut pair = Pair {
+        name: files.name.clone(),
+        outcome: Outcome::Same,
+        reason: None,
+        measures: None,
+        metric,
+        threshold,
+        changes: Vec::new(),
+    };
+    let mut panel = Panel::default();
+    let [expected, actual] = [&files.expected, &files.actual].map(|path| read(path));
+    if wants_panel {
+        let shown = |picture: &Option<Result<(Layers, bool), String>>| match picture {
+            Some(Ok((layers, is_hdr))) => to_screen(layers, *is_hdr).map(|picture| png(&picture)),
+            _ => None,
+        };
+        (panel.expected, panel.actual) = (shown(&expected), shown(&actual));
+    }
+    let ((expected, is_hdr), (actual, _)) = match (expected, actual) {
+        (Some(Ok(expected)), Some(Ok(actual))) => (expected, actual),
+        (Some(Err(reason)), _) | (_, Some(Err(reason))) => {
+            (pair.outcome, pair.reason) = (Outcome::Failed, Some(reason));
+            return (pair, panel, None);
+        }
+        (None, _) => {
+            (pair.outcome, pair.reason) = (Outcome::New, Some("there is no expected picture".to_owned()));
+            return (pair, panel, None);
+        }
+        (_, None) => {
+            (pair.outcome, pair.reason) = (Outcome::Missing, Some("there is no actual picture".to_owned()));
+            return (pair, panel, None);
+        }
+    };
+    if let (Some(old), Some(new)) = (expected.text("Scene"), actual.text("Scene")) {
+        pair.changes = changes(old, new);
+    }
+    if let (Some(old), Some(new)) = (expected.text("View"), actual.text("View")) {
+        pair.changes.extend(changes(old, new).into_iter().map(|change| format!("render: {change}")));
+    }
+    match measure(&expected, &actual, &args.channels, is_hdr) {
+        Ok(measures) => {
+            if metric.of(&measures) > threshold {
+                pair.outcome = Outcome::Different;
+            } else {
+                pair.changes.clear();
+            }
+            let difference = heat(expected.width, expected.height, &measures.map);
+            if wants_panel {
+                panel.difference = Some(png(&difference));
+            }
+            pair.measures = Some(measures);
+            (pair, panel, Some(difference))
+        }
+        Err(reason) => {
+            // Another size is a difference; a channel that is not there cannot be compared.
+            let is_size = (expected.width, expected.height) != (actual.width, actual.height);
+            pair.outcome = if is_size { Outcome::Different } else { Outcome::Failed };
+            pair.reason = Some(reason);
+            (pair, panel, None)
+        }
+    }
+}
+
+/// A picture and whether it is one of high dynamic range; `None` where there is no file.
+fn read(path: &Path) -> Option<Result<(Layers, bool), String>> {
+    let bytes = match fs::read(path) {
+        Ok(bytes) => bytes,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return None,
+        Err(error) => return Some(Err(format!("cannot read {}: {error}", path.display()))),
+    };
+    let is_exr = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"));
+    let layers = if is_exr { decode_exr(&bytes) } else { decode_linear(&bytes) };
+    Some(layers.map(|layers| (layers, is_exr)).map_err(|error| format!("cannot read {}: {error}", path.display())))
+}
+
+/// The colours of a picture as a screen shows them, over black.
+fn to_screen(layers: &Layers, is_hdr: bool) -> Option<Rgba> {
+    let pixels = layers.pixels(["R", "G", "B"])?;
+    let byte = |x: f32| {
+        let linear = f64::from(x);
+        (to_srgb(if is_hdr { filmic(linear) } else { linear }) * 255.0).round() as u8
+    };
+    let bytes = pixels.iter().flat_map(|p| [byte(p[0]), byte(p[1]), byte(p[2]), 255]).collect();
+    Some(Rgba { width: layers.width, height: layers.height, bytes })
+}
+
+/// FLIP in colours: black, red, yellow, white.
+fn heat(width: u32, height: u32, map: &[f32]) -> Rgba {
+    let ramp = |x: f32, from: f32| ((x - from) * 3.0).clamp(0.0, 1.0) * 255.0;
+    let colour = |&x: &f32| [ramp(x, 0.0) as u8, ramp(x, 1.0 / 3.0) as u8, ramp(x, 2.0 / 3.0) as u8, 255];
+    Rgba { width, height, bytes: map.iter().flat_map(colour).collect() }
+}
+
+fn png(picture: &Rgba) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    // Writing to memory does not fail.
+    let _ = encode_png(picture, &[], &mut bytes);
+    bytes
+}
+
+/// A line a pair, and an annotation where GitHub runs us.
+fn say(pair: &Pair, files: &Files, console: &Console) {
+    if console.json {
+        console.result(&serde_json::json!(pair));
+    } else {
+        console.line(&pair.line());
+    }
+    if !pair.is_same() && runs_on_github() {
+        // Percent and line ends have to be escaped there.
+        let text = pair.line().replace('%', "%25").replace('\n', "%0A");
+        console.line(&format!("::error file={}::{text}", files.expected.display()));
+    }
+}
+
+fn runs_on_github() -> bool {
+    std::env::var("GITHUB_ACTIONS").is_ok_and(|v| v == "true")
+}
+
+/// A table in the summary of a step of GitHub Actions.
+fn write_step_summary(pairs: &[Pair]) -> Result<(), Failure> {
+    let Some(path) = std::env::var_os("GITHUB_STEP_SUMMARY").filter(|_| runs_on_github()).map(PathBuf::from) else {
+        return Ok(());
+    };
+    let mut text = format!("{}\n\n| picture | outcome | |\n| --- | --- | --- |\n", summary(pairs));
+    for pair in pairs.iter().filter(|pair| !pair.is_same()) {
+        let told = pair.told().replace('|', "\\|");
+        text.push_str(&format!("| `{}` | {} | {told} |\n", pair.name, pair.outcome.name()));
+    }
+    fs::OpenOptions::new()
+        .create(true)
+        .append(true)
+        .open(&path)
+        .and_then(|mut file| file.write_all(text.as_bytes()))
+        .map_err(|e| Failure::file("write", &path, &e))
+}
+
+fn pictures(count: usize) -> String {
+    if count == 1 { "1 picture".to_owned() } else { format!("{count} pictures") }
+}
+
+/// Accepts what is there as expected.
+fn update(pairs: &[Pair], files: &[Files], console: &Console) -> Result<(), Failure> {
+    let mut refused = 0;
+    for (pair, files) in pairs.iter().zip(files) {
+        match pair.outcome {
+            Outcome::Different | Outcome::New => {
+                let bytes = fs::read(&files.actual).map_err(|e| Failure::file("read", &files.actual, &e))?;
+                write_bytes(&files.expected, &bytes).map_err(|e| Failure::file("write", &files.expected, &e))?;
+                console.note(&format!("accepted {}", files.expected.display()));
+            }
+            Outcome::Missing | Outcome::Failed => refused += 1,
+            Outcome::Same => {}
+        }
+    }
+    if refused > 0 {
+        return Err(Failure::Usage(format!(
+            "{} could not be accepted: delete what is no longer wanted",
+            pictures(refused)
+        )));
+    }
+    Ok(())
+}

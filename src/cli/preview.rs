@@ -1,0 +1,170 @@
+//! Pictures on their way to files: traced, by an outside renderer, or drawn.
+
+use std::io::{self, Cursor, Write};
+use std::path::Path;
+
+use super::args::{Look, RenderArgs};
+use super::error::Failure;
+use crate::files::{Rgba, add_mattes, encode_exr, encode_png, encode_png16, write_whole};
+use crate::math::{Progress, to_srgb};
+use crate::model::Model;
+use crate::raster::{Layers, filmic};
+use crate::scene::Resolved;
+use crate::trace::{self, Picture, View, World};
+
+/// Samples a pixel where none are asked for, in the studio and the exact look.
+const SAMPLES: [u32; 2] = [8, 9];
+/// A picture of more pixels than this does not fit with all that an EXR keeps of each.
+const MOST_PIXELS: u64 = 1 << 28;
+
+/// A finished picture.
+pub enum Drawn {
+    /// In linear light, with the names of its objects and limbs.
+    Traced(Traced),
+    /// As a screen shows it.
+    Screen(Rgba),
+}
+
+/// A traced picture.
+pub struct Traced {
+    picture: Picture,
+    is_filmic: bool,
+    objects: Vec<String>,
+    branches: Vec<String>,
+}
+
+/// The look as the tracer calls it.
+pub fn look(args: &RenderArgs) -> trace::Look {
+    match args.look {
+        Look::Studio => trace::Look::Studio,
+        Look::Exact => trace::Look::Exact,
+    }
+}
+
+/// Samples a pixel.
+pub fn samples(args: &RenderArgs) -> u32 {
+    args.samples.unwrap_or(SAMPLES[usize::from(args.look == Look::Exact)])
+}
+
+/// What is asked for of a picture of `size`; `data` keeps what an EXR holds besides colours.
+pub fn view(args: &RenderArgs, size: [u32; 2], data: bool) -> Result<View, Failure> {
+    let crop = args.crop.unwrap_or([0, 0, size[0], size[1]]);
+    let [x, y, width, height] = crop;
+    let fits = |from: u32, length: u32, whole: u32| from.checked_add(length).is_some_and(|end| end <= whole);
+    if !fits(x, width, size[0]) || !fits(y, height, size[1]) {
+        return Err(Failure::Usage(format!(
+            "--crop {x},{y},{width},{height} does not lie within the picture of {} by {} pixels",
+            size[0], size[1]
+        )));
+    }
+    if u64::from(width) * u64::from(height) > MOST_PIXELS {
+        return Err(Failure::Usage("the picture is too large: render it in parts, with --crop".to_owned()));
+    }
+    Ok(View { crop, transparent: args.transparent, data, ..View::new(size, look(args), samples(args)) })
+}
+
+/// Traces `view` of `model`.
+pub fn trace(model: &Model, view: &View, progress: &Progress) -> Result<Drawn, Failure> {
+    let world = World::new(model);
+    let picture = trace::render(&world, view, progress).map_err(|_| Failure::Stopped)?;
+    let mut objects: Vec<String> = model.objects.iter().map(|o| o.name.clone()).collect();
+    objects.push("ground".to_owned());
+    let is_filmic = view.look == trace::Look::Studio;
+    Ok(Drawn::Traced(Traced { picture, is_filmic, objects, branches: world.branch_names() }))
+}
+
+impl Drawn {
+    /// The picture as a screen shows it.
+    pub fn to_screen(&self) -> Rgba {
+        match self {
+            Self::Screen(picture) => picture.clone(),
+            Self::Traced(traced) => Rgba {
+                width: traced.picture.width,
+                height: traced.picture.height,
+                bytes: traced.encoded(255.0).map(|v| v as u8).collect(),
+            },
+        }
+    }
+
+    /// Writes it to `path`, as its ending says, with what shaped it.
+    pub fn write(&self, path: &Path, args: &RenderArgs, scene: &Resolved) -> Result<(), Failure> {
+        let software = format!("lichtenberg {}", env!("CARGO_PKG_VERSION"));
+        let document = scene.document().to_string();
+        let how = how(args, scene).to_string();
+        let texts = [
+            ("Title", scene.title.as_str()),
+            ("Software", software.as_str()),
+            ("Scene", document.as_str()),
+            ("View", how.as_str()),
+        ];
+        write_whole(path, |out| match self {
+            Self::Traced(traced) if is_exr(path) => {
+                let mut layers = traced.layers();
+                for (keyword, text) in texts {
+                    // Standard attributes where there are any.
+                    let keyword = if keyword == "Software" { "software" } else { keyword };
+                    layers.texts.push((keyword.to_owned(), text.to_owned()));
+                }
+                let mut bytes = Cursor::new(Vec::new());
+                encode_exr(&layers, &mut bytes)?;
+                out.write_all(bytes.get_ref())
+            }
+            Self::Screen(_) if is_exr(path) => {
+                Err(io::Error::other("only the built-in preview writes OpenEXR: leave out --with, or end it in .png"))
+            }
+            Self::Traced(traced) if args.bits == "16" => {
+                let values: Vec<u16> = traced.encoded(65535.0).map(|v| v as u16).collect();
+                encode_png16([traced.picture.width, traced.picture.height], &values, &texts, out)
+            }
+            _ => encode_png(&self.to_screen(), &texts, out),
+        })
+        .map_err(|e| Failure::file("write", path, &e))
+    }
+}
+
+/// Does the name end in `.exr`?
+pub fn is_exr(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"))
+}
+
+/// What shapes a picture besides its scene.
+fn how(args: &RenderArgs, scene: &Resolved) -> serde_json::Value {
+    if args.schematic {
+        return serde_json::json!({ "renderer": "schematic", "size": scene.size });
+    }
+    serde_json::json!({
+        "renderer": if args.with.is_some() { "povray" } else { "preview" },
+        "size": scene.size,
+        "crop": args.crop,
+        "look": if args.look == Look::Studio { "studio" } else { "exact" },
+        "samples": samples(args),
+        "transparent": args.transparent,
+    })
+}
+
+impl Traced {
+    /// Red, green, blue in sRGB and alpha, not premultiplied, from 0 to `most`, rounded.
+    fn encoded(&self, most: f64) -> impl Iterator<Item = f64> {
+        let is_filmic = self.is_filmic;
+        self.picture.pixels.iter().flat_map(move |p| {
+            let alpha = f64::from(p[3]);
+            let show = |c: f32| {
+                let linear = if alpha > 0.0 { f64::from(c) / alpha } else { 0.0 };
+                to_srgb(if is_filmic { filmic(linear) } else { linear })
+            };
+            [show(p[0]), show(p[1]), show(p[2]), alpha].map(|v| libm::floor(v * most + 0.5))
+        })
+    }
+
+    /// Every channel, with mattes of objects and limbs.
+    fn layers(&self) -> Layers {
+        let mut layers = self.picture.layers();
+        if !self.picture.data.is_empty() {
+            let objects: Vec<_> = self.picture.data.iter().map(|d| d.objects).collect();
+            let branches: Vec<_> = self.picture.data.iter().map(|d| d.branches).collect();
+            add_mattes(&mut layers, "CryptoObject", &self.objects, &objects);
+            add_mattes(&mut layers, "CryptoBranch", &self.branches, &branches);
+        }
+        layers
+    }
+}

@@ -1,0 +1,148 @@
+//! `render --watch`: the picture follows the scene's files.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::{Duration, Instant};
+
+use notify::{RecursiveMode, Watcher};
+
+use super::args::{RenderArgs, Show};
+use super::console::Console;
+use super::error::Failure;
+use super::jobs::Jobs;
+use super::preview::{Drawn, is_exr, trace, view};
+use super::render::{draw, report};
+use super::terminal;
+use crate::math::Progress;
+
+/// The first picture is this many times smaller, with one sample a pixel.
+const COARSE: u32 = 4;
+/// How often we look whether to stop.
+const POLL: Duration = Duration::from_millis(50);
+/// Files are written in several strokes: a change counts when it has been quiet for so long.
+const QUIET: Duration = Duration::from_millis(80);
+/// What scenes are made of.
+const ENDINGS: [&str; 8] = ["toml", "svg", "png", "jpg", "jpeg", "obj", "exr", "hdr"];
+
+/// Renders whenever a file beside the scene changes, until interrupted.
+pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Result<(), Failure> {
+    let [scene] = &args.scene.scenes[..] else {
+        return Err(Failure::Usage("--watch follows one scene".to_owned()));
+    };
+    let file = PathBuf::from(scene);
+    if !file.is_file() {
+        return Err(Failure::Usage(format!("--watch follows a scene file; `{scene}` is none (see `new`)")));
+    }
+    let output = output(args)?;
+    let (send, changes) = channel();
+    let (written, own) = (output.clone(), output.file_name().map(ToOwned::to_owned));
+    let mut watcher = notify::recommended_watcher(move |event: notify::Result<notify::Event>| {
+        let Ok(event) = event else { return };
+        let is_ours = |path: &PathBuf| path.file_name().map(ToOwned::to_owned) == own || *path == written;
+        let is_source = |path: &PathBuf| {
+            path.extension().is_some_and(|e| ENDINGS.iter().any(|ending| e.eq_ignore_ascii_case(ending)))
+                && !is_ours(path)
+        };
+        // Reading a file is no change of it.
+        if !event.kind.is_access() && event.paths.iter().any(is_source) {
+            let _ = send.send(());
+        }
+    })
+    .map_err(|error| Failure::Usage(format!("cannot watch for changes: {error}")))?;
+    let folder = file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    watcher
+        .watch(folder, RecursiveMode::NonRecursive)
+        .map_err(|error| Failure::Usage(format!("cannot watch {}: {error}", folder.display())))?;
+
+    loop {
+        // Work on an outdated scene stops at the next change, all work at a signal.
+        let outdated = Arc::new(AtomicBool::new(false));
+        let progress = console.progress_until(scene, Arc::clone(&outdated));
+        let result = std::thread::scope(|threads_here| {
+            let work = threads_here.spawn(|| once(args, &output, threads, console, &progress));
+            loop {
+                let has_changed = changes.recv_timeout(POLL).is_ok();
+                if has_changed || console.is_stopped() {
+                    outdated.store(true, Ordering::Relaxed);
+                }
+                if work.is_finished() {
+                    return work.join().unwrap_or(Err(Failure::Stopped));
+                }
+            }
+        });
+        console.done();
+        match result {
+            _ if console.is_stopped() => return Err(Failure::Stopped),
+            Ok(()) | Err(Failure::Stopped) => {}
+            // A mistake in the scene is shown, and mended by the next change.
+            Err(failure) => failure.print(console),
+        }
+        if !outdated.load(Ordering::Relaxed) {
+            wait(console, &changes)?;
+        }
+        while changes.recv_timeout(QUIET).is_ok() {}
+    }
+}
+
+/// Waits for a change.
+fn wait(console: &Console, changes: &std::sync::mpsc::Receiver<()>) -> Result<(), Failure> {
+    loop {
+        if console.is_stopped() {
+            return Err(Failure::Stopped);
+        }
+        match changes.recv_timeout(POLL) {
+            Ok(()) => return Ok(()),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return Err(Failure::Usage("changes are no longer seen".to_owned())),
+        }
+    }
+}
+
+fn output(args: &RenderArgs) -> Result<PathBuf, Failure> {
+    // The scene may be wrong as yet: its own name is enough.
+    let name = Path::new(&args.scene.scenes[0]).file_stem().map_or("scene".into(), |n| n.to_string_lossy());
+    let pattern = args.output.clone().unwrap_or_else(|| "{scene}.png".to_owned());
+    let path = pattern.replace("{scene}", &name);
+    if path.contains('{') {
+        return Err(Failure::Usage("with --watch, {scene} is the only pattern".to_owned()));
+    }
+    Ok(PathBuf::from(path))
+}
+
+/// Once the whole way, coarse first.
+fn once(
+    args: &RenderArgs,
+    output: &Path,
+    threads: Option<usize>,
+    console: &Console,
+    progress: &Progress,
+) -> Result<(), Failure> {
+    let begun = Instant::now();
+    let jobs = Jobs::new(&args.scene, console)?;
+    let [job] = &jobs.list[..] else { return Err(Failure::Usage("--watch follows one scene".to_owned())) };
+    let scene = jobs.load(job)?;
+    let finish = |drawn: Drawn| -> Result<(), Failure> {
+        drawn.write(output, args, &scene)?;
+        if args.show.contains(&Show::Terminal) {
+            terminal::show(&drawn.to_screen(), console)?;
+        }
+        report(output, job, &scene, begun, console);
+        Ok(())
+    };
+    if args.with.is_some() || args.schematic {
+        return finish(draw(args, &jobs, job, &scene, false, threads, console, progress)?);
+    }
+    let fine = view(args, scene.size, is_exr(output))?;
+    let model = jobs.model(&scene, &[], console, progress)?;
+    let less = |x: u32| (x / COARSE).max(1);
+    let coarse = crate::trace::View {
+        size: fine.size.map(less),
+        crop: [fine.crop[0] / COARSE, fine.crop[1] / COARSE, less(fine.crop[2]), less(fine.crop[3])],
+        samples: 1,
+        ..fine
+    };
+    finish(trace(&model, &coarse, progress)?)?;
+    finish(trace(&model, &fine, progress)?)
+}

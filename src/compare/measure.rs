@@ -1,0 +1,207 @@
+//! How far two pictures are apart, in numbers.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{PIXELS_PER_DEGREE, flip_hdr, flip_ldr};
+use crate::math::to_srgb;
+use crate::raster::Layers;
+
+/// Differences above this count in [`Measures::share`]: more than rounding makes.
+const NOTICED: f64 = 2.0 / 255.0;
+
+/// The differences of two pictures of the same size.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Measures {
+    /// FLIP: its mean.
+    pub flip: f64,
+    /// FLIP: what 95 % of the pixels stay below.
+    pub flip_95: f64,
+    /// FLIP: its largest.
+    pub flip_max: f64,
+    /// The largest difference of a channel: encoded, from 0 to 1, for screen pictures; in linear light for EXR.
+    pub max: f64,
+    /// The root of the mean square of these differences.
+    pub rms: f64,
+    /// The share of pixels with a difference above 2/255.
+    pub share: f64,
+    /// FLIP a pixel.
+    #[serde(skip)]
+    pub map: Vec<f32>,
+}
+
+/// What decides whether two pictures are the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Metric {
+    /// Mean FLIP.
+    Flip,
+    /// The FLIP that 95 % of the pixels stay below.
+    #[serde(rename = "flip-95")]
+    Flip95,
+    /// The largest FLIP: a change anywhere counts.
+    #[default]
+    FlipMax,
+    /// The largest difference.
+    Max,
+    /// Root-mean-square difference.
+    Rms,
+    /// Share of pixels that differ by more than 2/255.
+    Share,
+}
+
+impl Metric {
+    /// The value above which pictures differ, unless another is given.
+    #[must_use]
+    pub fn threshold(self) -> f64 {
+        match self {
+            Self::Flip => 0.01,
+            Self::Flip95 => 0.05,
+            Self::FlipMax => 0.1,
+            Self::Max => NOTICED,
+            Self::Rms => 0.002,
+            Self::Share => 0.001,
+        }
+    }
+
+    /// Its name, as it is chosen.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Flip => "flip",
+            Self::Flip95 => "flip-95",
+            Self::FlipMax => "flip-max",
+            Self::Max => "max",
+            Self::Rms => "rms",
+            Self::Share => "share",
+        }
+    }
+
+    /// Its value among `measures`.
+    #[must_use]
+    pub fn of(self, measures: &Measures) -> f64 {
+        match self {
+            Self::Flip => measures.flip,
+            Self::Flip95 => measures.flip_95,
+            Self::FlipMax => measures.flip_max,
+            Self::Max => measures.max,
+            Self::Rms => measures.rms,
+            Self::Share => measures.share,
+        }
+    }
+}
+
+/// The channels that `chosen` names: a channel, or a layer of several (`glow`, `N`). Without any: `R G B A`, or all
+/// where there are no such.
+fn chosen_channels(picture: &Layers, chosen: &[String]) -> Result<Vec<String>, String> {
+    let names = || picture.channels.iter().map(|c| c.name.clone());
+    if chosen.is_empty() {
+        let colours: Vec<String> = names().filter(|n| ["R", "G", "B", "A"].contains(&n.as_str())).collect();
+        return Ok(if colours.is_empty() { names().collect() } else { colours });
+    }
+    let mut all = Vec::new();
+    for choice in chosen {
+        let before = all.len();
+        all.extend(names().filter(|n| n == choice || n.rsplit_once('.').is_some_and(|(layer, _)| layer == choice)));
+        if all.len() == before {
+            return Err(format!(
+                "it has no channel or layer `{choice}`; it has {}",
+                names().collect::<Vec<_>>().join(", ")
+            ));
+        }
+    }
+    Ok(all)
+}
+
+/// How far `actual` is from `expected` in the channels that `chosen` names. FLIP looks at red, green and blue where
+/// they are among them, else at the first as grey. `is_hdr` compares linear light as it is, otherwise as a screen
+/// shows it.
+///
+/// # Errors
+/// A sentence: different sizes, or channels that are not there.
+pub fn measure(expected: &Layers, actual: &Layers, chosen: &[String], is_hdr: bool) -> Result<Measures, String> {
+    if (expected.width, expected.height) != (actual.width, actual.height) {
+        return Err(format!(
+            "sizes differ: {} by {} expected, {} by {} there",
+            expected.width, expected.height, actual.width, actual.height
+        ));
+    }
+    let names = chosen_channels(expected, chosen)?;
+    let mut pairs = Vec::new();
+    for name in &names {
+        let there = actual.channel(name).ok_or_else(|| format!("channel `{name}` is missing"))?;
+        pairs.push((expected.channel(name).unwrap_or(&[]), there));
+    }
+    let show = |x: f32, name: &str| match is_hdr || name == "A" {
+        true => f64::from(x),
+        false => to_srgb(f64::from(x)),
+    };
+    let pixels = expected.width as usize * expected.height as usize;
+    let mut worst = vec![0.0_f64; pixels];
+    let mut squares = 0.0;
+    for ((a, b), name) in pairs.iter().zip(&names) {
+        for i in 0..pixels {
+            // Equal bits, infinities among them, are no difference.
+            let d = if a[i].to_bits() == b[i].to_bits() { 0.0 } else { (show(a[i], name) - show(b[i], name)).abs() };
+            let d = if d.is_nan() { f64::INFINITY } else { d };
+            squares += d * d;
+            if d > worst[i] {
+                worst[i] = d;
+            }
+        }
+    }
+    let of_layer = |c: &str| names.iter().find(|n| *n == c || n.ends_with(&format!(".{c}"))).map(String::as_str);
+    let first = names.first().map_or("", String::as_str);
+    let rgb = match (of_layer("R"), of_layer("G"), of_layer("B")) {
+        (Some(r), Some(g), Some(b)) => [r, g, b],
+        _ => [first; 3],
+    };
+    // FLIP knows no infinities.
+    let finite = |picture: &Layers| -> Vec<[f32; 3]> {
+        let pixels = picture.pixels(rgb).unwrap_or_default();
+        pixels.into_iter().map(|p| p.map(|x| if x.is_finite() { x } else { f32::MAX.sqrt() })).collect()
+    };
+    let flip = if is_hdr { flip_hdr } else { flip_ldr };
+    let map = flip(expected.width, &finite(expected), &finite(actual), PIXELS_PER_DEGREE);
+    let mut sorted = map.clone();
+    sorted.sort_by(f32::total_cmp);
+    Ok(Measures {
+        flip: map.iter().map(|&x| f64::from(x)).sum::<f64>() / pixels as f64,
+        flip_95: sorted.get((pixels * 95).div_ceil(100).max(1) - 1).map_or(0.0, |&x| f64::from(x)),
+        flip_max: sorted.last().map_or(0.0, |&x| f64::from(x)),
+        max: worst.iter().copied().fold(0.0, f64::max),
+        rms: libm::sqrt(squares / (pixels * names.len().max(1)) as f64),
+        share: worst.iter().filter(|d| **d > NOTICED).count() as f64 / pixels as f64,
+        map,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::raster::Channel;
+
+    fn picture(values: &[(&str, [f32; 4])]) -> Layers {
+        let channel =
+            |(name, v): &(&str, [f32; 4])| Channel { name: (*name).to_owned(), values: v.to_vec(), is_half: false };
+        Layers { width: 2, height: 2, channels: values.iter().map(channel).collect(), texts: vec![] }
+    }
+
+    #[test]
+    fn plain_errors_are_plain() {
+        let a = picture(&[("R", [0.0; 4]), ("G", [0.0; 4]), ("B", [0.0; 4]), ("Z", [f32::INFINITY; 4])]);
+        let b = picture(&[
+            ("R", [0.0, 0.0, 1.0, 0.0]),
+            ("G", [0.0; 4]),
+            ("B", [0.0; 4]),
+            ("Z", [f32::INFINITY, 1.0, 2.0, f32::NAN]),
+        ]);
+        let m = measure(&a, &b, &[], false).unwrap();
+        assert!((m.max - 1.0).abs() < 1e-12 && m.share == 0.25);
+        assert!((m.rms - libm::sqrt(1.0 / 12.0)).abs() < 1e-12);
+        assert!(m.flip_max > 0.0 && m.flip < m.flip_max);
+        let z = measure(&a, &b, &["Z".to_owned()], true).unwrap();
+        assert_eq!((z.max, z.share), (f64::INFINITY, 0.75));
+        assert!(measure(&a, &b, &["N".to_owned()], true).unwrap_err().contains("no channel or layer `N`"));
+    }
+}

@@ -1,0 +1,13 @@
+//! Telling pictures apart: FLIP and plain errors, and reports of many pairs.
+//!
+//! Stages take decoded pictures ([`crate::raster::Layers`]); files and folders are the command's.
+
+mod flip;
+mod measure;
+mod report;
+mod scene_change;
+
+pub use flip::{PIXELS_PER_DEGREE, flip_hdr, flip_ldr};
+pub use measure::{Measures, Metric, measure};
+pub use report::{Outcome, Pair, Panel, html, junit, summary};
+pub use scene_change::changes;

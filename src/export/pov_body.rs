@@ -1,0 +1,108 @@
+//! The bodies of POV-Ray objects: spheres, frusta and triangles, streamed.
+
+use std::io::{self, Write};
+
+use super::decimal::{number, push_number, push_vector, vector};
+use super::pov::to_pov;
+use crate::geom::frustum;
+use crate::math::DVec3;
+use crate::model::{Digits, Frame, Mesh, Object, Pattern, limb_frames};
+
+/// The text buffered before it is written.
+const BUFFER: usize = 1 << 16;
+
+/// Writes what `object` is made of. Where its material has a pattern, limbs that are thick enough to show it have
+/// `texture`, laid along them.
+pub(super) fn write_body(
+    object: &Object,
+    pattern: Option<&Pattern>,
+    texture: &str,
+    out: &mut impl Write,
+) -> io::Result<()> {
+    let frames = pattern.map(|pattern| (limb_frames(object), pattern.least_radius()));
+    let laid = |ball: u32| match &frames {
+        Some((frames, least)) if object.balls[ball as usize].radius >= *least => {
+            format!(" texture{{{texture} {}}}", matrix(&frames[ball as usize], object.digits))
+        }
+        _ => String::new(),
+    };
+    let digits = object.digits;
+    let scale = digits.scale();
+    let mut text = Vec::with_capacity(BUFFER + 256);
+    for (i, ball) in (0..).zip(&object.balls) {
+        text.extend_from_slice(b"sphere{");
+        push_vector(&mut text, to_pov(ball.centre), digits, scale);
+        text.push(b',');
+        push_number(&mut text, ball.radius, digits, scale);
+        text.extend_from_slice(laid(i).as_bytes());
+        text.extend_from_slice(b"}\n");
+        flush_at(&mut text, out, BUFFER)?;
+    }
+    for &[a, b] in &object.segments {
+        let end = b;
+        let (a, b) = (&object.balls[a as usize], &object.balls[b as usize]);
+        let Some(f) = frustum(a.centre, a.radius, b.centre, b.radius) else { continue };
+        let (from, to) = (to_pov(f.a), to_pov(f.b));
+        let (ra, rb) = (digits.round(f.ra), digits.round(f.rb));
+        // A cone without length or width is fatal to the whole file.
+        if digits.round_point(from) == digits.round_point(to) || (ra == 0.0 && rb == 0.0) {
+            continue;
+        }
+        text.extend_from_slice(b"cone{");
+        push_vector(&mut text, from, digits, scale);
+        text.push(b',');
+        push_number(&mut text, ra, digits, scale);
+        text.push(b',');
+        push_vector(&mut text, to, digits, scale);
+        text.push(b',');
+        push_number(&mut text, rb, digits, scale);
+        text.extend_from_slice(b" open");
+        text.extend_from_slice(laid(end).as_bytes());
+        text.extend_from_slice(b"}\n");
+        flush_at(&mut text, out, BUFFER)?;
+    }
+    flush_at(&mut text, out, 1)?;
+    write_mesh(&object.mesh, digits, out)
+}
+
+/// The matrix that lays a texture along a limb.
+fn matrix(frame: &Frame, digits: Digits) -> String {
+    let at = to_pov(frame.at - frame.axes[1] * frame.along);
+    let unit = Digits(6);
+    let mut numbers: Vec<String> =
+        frame.axes.iter().flat_map(|&axis| to_pov(axis).to_array()).map(|x| number(x, unit)).collect();
+    numbers.extend(at.to_array().map(|x| number(x, digits)));
+    format!("matrix<{}>", numbers.join(","))
+}
+
+fn write_mesh(mesh: &Mesh, digits: Digits, out: &mut impl Write) -> io::Result<()> {
+    if mesh.triangles.is_empty() {
+        return Ok(());
+    }
+    let list = |out: &mut dyn Write, name: &str, points: &[DVec3], digits: Digits| -> io::Result<()> {
+        write!(out, "{name} {{ {}", points.len())?;
+        for &p in points {
+            write!(out, ",\n{}", vector(to_pov(p), digits))?;
+        }
+        writeln!(out, " }}")
+    };
+    writeln!(out, "mesh2 {{")?;
+    list(out, "vertex_vectors", &mesh.points, digits)?;
+    if !mesh.normals.is_empty() {
+        list(out, "normal_vectors", &mesh.normals, Digits(6))?;
+    }
+    write!(out, "face_indices {{ {}", mesh.triangles.len())?;
+    for [a, b, c] in &mesh.triangles {
+        write!(out, ",\n<{a},{b},{c}>")?;
+    }
+    writeln!(out, " }}\n}}")
+}
+
+/// Writes `text` out and empties it when it has reached `size` bytes.
+fn flush_at(text: &mut Vec<u8>, out: &mut impl Write, size: usize) -> io::Result<()> {
+    if text.len() >= size {
+        out.write_all(text)?;
+        text.clear();
+    }
+    Ok(())
+}

@@ -1,0 +1,29 @@
+//! The sRGB encoding (IEC 61966-2-1).
+
+use super::power;
+
+/// The sRGB encoding of linear light, clamped to 0 to 1.
+#[must_use]
+pub fn to_srgb(linear: f64) -> f64 {
+    let c = linear.clamp(0.0, 1.0);
+    if c <= 0.003_130_8 { c * 12.92 } else { 1.055 * power(c, 1.0 / 2.4) - 0.055 }
+}
+
+/// Linear light from its sRGB encoding.
+#[must_use]
+pub fn from_srgb(encoded: f64) -> f64 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { power((encoded + 0.055) / 1.055, 2.4) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_byte_survives() {
+        for i in 0..=255 {
+            let x = f64::from(i) / 255.0;
+            assert!((to_srgb(from_srgb(x)) - x).abs() < 1e-9);
+        }
+    }
+}

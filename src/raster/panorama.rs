@@ -1,0 +1,112 @@
+//! A picture of all directions.
+
+use super::{Channel, Layers};
+use crate::math::DVec3;
+
+/// An equirectangular picture in linear light: the top row looks up, the left edge and the right look along -x, the
+/// middle along +x, a quarter from the left along -y (z up).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panorama {
+    width: u32,
+    height: u32,
+    pixels: Vec<[f32; 3]>,
+}
+
+impl Panorama {
+    /// A picture of `width` by `height` pixels, or `None` where `pixels` does not fit or there are none.
+    #[must_use]
+    pub fn new(width: u32, height: u32, pixels: Vec<[f32; 3]>) -> Option<Self> {
+        let fits = u64::from(width) * u64::from(height) == pixels.len() as u64;
+        (fits && !pixels.is_empty()).then_some(Self { width, height, pixels })
+    }
+
+    /// Pixels in a row, and rows.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
+    /// Its pixels, row by row from the top.
+    #[must_use]
+    pub fn pixels(&self) -> &[[f32; 3]] {
+        &self.pixels
+    }
+
+    /// Its channels, the light times `strength`.
+    #[must_use]
+    pub fn layers(&self, strength: f64) -> Layers {
+        let channel = |(i, name): (usize, &str)| Channel {
+            name: name.to_owned(),
+            values: self.pixels.iter().map(|p| (f64::from(p[i]) * strength) as f32).collect(),
+            is_half: true,
+        };
+        let channels = ["R", "G", "B"].into_iter().enumerate().map(channel).collect();
+        Layers { width: self.width, height: self.height, channels, texts: Vec::new() }
+    }
+
+    /// The light from a direction of length 1, between pixel centres by bilinear interpolation; rows go around, columns
+    /// end at the poles.
+    #[must_use]
+    pub fn at(&self, d: DVec3) -> [f64; 3] {
+        let u = 0.5 + libm::atan2(d.y, d.x) / std::f64::consts::TAU;
+        let v = 0.5 - libm::asin(d.z.clamp(-1.0, 1.0)) / std::f64::consts::PI;
+        let (w, h) = (i64::from(self.width), i64::from(self.height));
+        let (x, y) = (u * w as f64 - 0.5, (v * h as f64 - 0.5).clamp(0.0, (h - 1) as f64));
+        let (x0, y0) = (libm::floor(x), libm::floor(y));
+        let (fx, fy) = (x - x0, y - y0);
+        let pixel = |x: i64, y: i64| self.pixels[(y.min(h - 1) * w + x.rem_euclid(w)) as usize].map(f64::from);
+        let (x0, y0) = (x0 as i64, y0 as i64);
+        let corners = [pixel(x0, y0), pixel(x0 + 1, y0), pixel(x0, y0 + 1), pixel(x0 + 1, y0 + 1)];
+        let weights = [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy];
+        [0, 1, 2].map(|c| (0..4).map(|i| corners[i][c] * weights[i]).sum())
+    }
+
+    /// The mean light from just above the horizon.
+    #[must_use]
+    pub fn horizon(&self) -> [f64; 3] {
+        let row = (self.height / 2).saturating_sub(1) as usize * self.width as usize;
+        let row = &self.pixels[row..row + self.width as usize];
+        [0, 1, 2].map(|c| row.iter().map(|p| f64::from(p[c])).sum::<f64>() / row.len() as f64)
+    }
+
+    /// The mean light over the cap about a direction of length 1, `cos` the cosine of its half-angle; no pixel counts
+    /// with more than `most`.
+    #[must_use]
+    pub fn mean(&self, about: DVec3, cos: f64, most: f64) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        let mut weight = 0.0;
+        for y in 0..self.height {
+            let rise = std::f64::consts::PI * (0.5 - (f64::from(y) + 0.5) / f64::from(self.height));
+            let (z, r) = (libm::sin(rise), libm::cos(rise));
+            for x in 0..self.width {
+                let turn = std::f64::consts::TAU * ((f64::from(x) + 0.5) / f64::from(self.width) - 0.5);
+                let d = DVec3::new(r * libm::cos(turn), r * libm::sin(turn), z);
+                if d.dot(about) >= cos {
+                    let pixel = self.pixels[(y * self.width + x) as usize];
+                    (0..3).for_each(|c| sum[c] += f64::from(pixel[c]).min(most) * r);
+                    weight += r;
+                }
+            }
+        }
+        if weight > 0.0 { sum.map(|x| x / weight) } else { self.at(about) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_find_their_pixels() {
+        let mut pixels = vec![[0.0; 3]; 8];
+        pixels[1] = [1.0, 2.0, 3.0];
+        let panorama = Panorama::new(4, 2, pixels).unwrap();
+        // Column 1 of 4 is centred three eighths from the left: 45 degrees from -y towards +x... and up.
+        let turn = std::f64::consts::TAU * (0.375 - 0.5);
+        let (up, r) = (libm::sqrt(0.5), libm::sqrt(0.5));
+        let d = DVec3::new(r * libm::cos(turn), r * libm::sin(turn), up);
+        assert!((panorama.at(d)[2] - 3.0).abs() < 1e-9);
+        assert_eq!(panorama.horizon(), [0.25, 0.5, 0.75]);
+        assert!(Panorama::new(2, 2, vec![]).is_none());
+    }
+}

@@ -1,0 +1,26 @@
+//! The tone curve of finished pictures.
+
+/// Light up to this is left as it is; what is above bends towards white.
+const SHOULDER: f64 = 0.8;
+
+/// A filmic shoulder: highlights bend softly to white instead of being cut off, and everything else keeps its value,
+/// so that renderers without such a curve show the same but for highlights.
+#[must_use]
+pub fn filmic(linear: f64) -> f64 {
+    if linear <= SHOULDER {
+        return linear;
+    }
+    let room = 1.0 - SHOULDER;
+    SHOULDER + room * (1.0 - libm::exp(-(linear - SHOULDER) / room))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_curve_is_smooth_and_ends_at_white() {
+        assert_eq!(filmic(0.3), 0.3);
+        assert!(filmic(0.8 + 1e-6) - filmic(0.8) < 1.1e-6 && filmic(50.0) <= 1.0 && filmic(50.0) > 0.999);
+    }
+}

@@ -1,0 +1,240 @@
+//! From a world to a picture: camera rays, samples, tiles.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use super::film::{Data, Picture, Sample, data, mean};
+use super::sampling::numbers;
+use super::smooth::{MARGIN, smooth};
+use super::world::{Within, World};
+use crate::bvh::Ray;
+use crate::math::{Cancelled, Colour, DVec3, Progress};
+use crate::model::{Camera, Projection};
+
+/// Side of a tile, in pixels: small enough to share out evenly, large enough that its rays meet the same things.
+const TILE: u32 = 16;
+/// Samples after which a pixel that shows nothing but sky is left.
+const FIRST: usize = 4;
+
+/// How a world is lit and sampled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Look {
+    /// What POV-Ray shows: local illumination, and its own samples.
+    Exact,
+    /// Light from the whole sky, soft sunlight, contact with the ground.
+    #[default]
+    Studio,
+}
+
+/// What is to be rendered.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// Size of the whole picture, in pixels.
+    pub size: [u32; 2],
+    /// The part that is rendered: left, top, width, height, in pixels.
+    pub crop: [u32; 4],
+    /// The look.
+    pub look: Look,
+    /// Samples a pixel. In the exact look, 1 samples the pixel's middle; more is POV-Ray's `+AM1 +R` of the root:
+    /// a grid and the middle.
+    pub samples: u32,
+    /// Leave out the sky: alpha is what objects and the ground cover.
+    pub transparent: bool,
+    /// Keep [`Data`] too.
+    pub data: bool,
+}
+
+impl View {
+    /// All of a picture of this size.
+    #[must_use]
+    pub fn new(size: [u32; 2], look: Look, samples: u32) -> Self {
+        Self { size, crop: [0, 0, size[0], size[1]], look, samples, transparent: false, data: false }
+    }
+}
+
+/// Camera rays.
+struct Eye {
+    camera: Camera,
+    frame: [DVec3; 3],
+    size: [f64; 2],
+    /// Distance of the picture's plane, where it is 1 high; or its width.
+    scale: f64,
+    within: Vec<Within>,
+}
+
+impl Eye {
+    fn new(world: &World<'_>, size: [u32; 2]) -> Self {
+        let camera = world.model.camera;
+        let within = match camera.projection {
+            Projection::Perspective { .. } => world.within(camera.at),
+            Projection::Parallel { .. } => Vec::new(),
+        };
+        let size = size.map(f64::from);
+        let scale = match camera.projection {
+            Projection::Perspective { angle } => 0.5 * size[0] / size[1] / libm::tan(angle * 0.5),
+            Projection::Parallel { width } => width,
+        };
+        Self { camera, frame: camera.frame(), size, scale, within }
+    }
+
+    /// The ray through a point of the picture, in pixels (`reference/povray.md`).
+    fn ray(&self, x: f64, y: f64) -> Ray {
+        let [right, up, forwards] = self.frame;
+        let [width, height] = self.size;
+        let aspect = width / height;
+        let (u, v) = (x / width - 0.5, 0.5 - y / height);
+        match self.camera.projection {
+            Projection::Perspective { .. } => {
+                Ray::new(self.camera.at, (forwards * self.scale + right * (aspect * u) + up * v).normalize())
+            }
+            Projection::Parallel { .. } => {
+                Ray::new(self.camera.at + (right * u + up * (v / aspect)) * self.scale, forwards)
+            }
+        }
+    }
+}
+
+/// Renders `view` of `world`.
+///
+/// # Errors
+/// [`Cancelled`] by `progress`.
+pub fn render(world: &World<'_>, view: &View, progress: &Progress) -> Result<Picture, Cancelled> {
+    let [left, top, width, height] = view.crop;
+    if view.look == Look::Exact {
+        return Ok(trace_tiles(world, view, progress)?.0);
+    }
+    // A crop shows what the whole would: smoothing needs to know what is around it.
+    let (x, y) = (left.saturating_sub(MARGIN), top.saturating_sub(MARGIN));
+    let right = (left + width + MARGIN).min(view.size[0]);
+    let bottom = (top + height + MARGIN).min(view.size[1]);
+    let wide = View { crop: [x, y, right - x, bottom - y], ..*view };
+    let (mut picture, is_ground) = trace_tiles(world, &wide, progress)?;
+    picture.pixels = smooth(picture.width, &picture.pixels, &is_ground);
+    Ok(picture.cut([left - x, top - y, width, height]))
+}
+
+/// Traces a view, and tells where all samples met the ground.
+fn trace_tiles(world: &World<'_>, view: &View, progress: &Progress) -> Result<(Picture, Vec<bool>), Cancelled> {
+    let eye = Eye::new(world, view.size);
+    let [left, top, width, height] = view.crop;
+    let mut tiles: Vec<(u32, u32)> =
+        (0..height.div_ceil(TILE)).flat_map(|y| (0..width.div_ceil(TILE)).map(move |x| (x, y))).collect();
+    tiles.sort_by_key(|&(x, y)| morton(x) | morton(y) << 1);
+    let ground = world.model.objects.len() as u32 + 1;
+    let done = AtomicUsize::new(0);
+    let traced: Vec<Vec<Traced>> = tiles
+        .par_iter()
+        .map(|&(tile_x, tile_y)| {
+            progress.check()?;
+            let mut pixels = Vec::with_capacity((TILE * TILE) as usize);
+            let mut samples = Vec::new();
+            for y in tile_y * TILE..((tile_y + 1) * TILE).min(height) {
+                for x in tile_x * TILE..((tile_x + 1) * TILE).min(width) {
+                    samples.clear();
+                    sample(world, view, &eye, left + x, top + y, &mut samples);
+                    pixels.push(Traced {
+                        place: (y * width + x) as usize,
+                        pixel: mean(&samples),
+                        is_ground: samples.iter().all(|s| s.object == ground),
+                        data: view.data.then(|| data(&samples)),
+                    });
+                }
+            }
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            progress.report("render", done as f64 / tiles.len() as f64)?;
+            Ok(pixels)
+        })
+        .collect::<Result<_, Cancelled>>()?;
+    let count = width as usize * height as usize;
+    let mut picture = Picture { width, height, pixels: vec![[0.0; 4]; count], data: Vec::new() };
+    let mut is_ground = vec![false; count];
+    let mut kept: Vec<Option<Data>> = vec![None; if view.data { count } else { 0 }];
+    for traced in traced.into_iter().flatten() {
+        picture.pixels[traced.place] = traced.pixel;
+        is_ground[traced.place] = traced.is_ground;
+        if traced.data.is_some() {
+            kept[traced.place] = traced.data;
+        }
+    }
+    picture.data = kept.into_iter().flatten().collect();
+    Ok((picture, is_ground))
+}
+
+/// A finished pixel.
+struct Traced {
+    place: usize,
+    pixel: [f32; 4],
+    is_ground: bool,
+    data: Option<Data>,
+}
+
+/// The bits of `x` with a gap after each.
+fn morton(x: u32) -> u64 {
+    (0..32).fold(0, |spread, bit| spread | (u64::from(x) >> bit & 1) << (2 * bit))
+}
+
+/// Takes the samples of a pixel.
+fn sample(world: &World<'_>, view: &View, eye: &Eye, x: u32, y: u32, samples: &mut Vec<Sample>) {
+    let (px, py) = (f64::from(x), f64::from(y));
+    let take = |dx: f64, dy: f64, u: &[f64; 6]| trace(world, view, eye, &eye.ray(px + dx, py + dy), u);
+    match view.look {
+        Look::Exact => {
+            samples.push(take(0.5, 0.5, &[0.0; 6]));
+            let side = libm::round(libm::sqrt(f64::from(view.samples)));
+            if side > 1.0 {
+                for j in 0..side as u32 {
+                    for i in 0..side as u32 {
+                        samples.push(take((f64::from(i) + 0.5) / side, (f64::from(j) + 0.5) / side, &[0.0; 6]));
+                    }
+                }
+            }
+        }
+        Look::Studio => {
+            for u in numbers(x, y, view.samples) {
+                samples.push(take(u[0], u[1], &u));
+                if samples.len() == FIRST && samples.iter().all(|s| s.object == 0) {
+                    return;
+                }
+            }
+        }
+    }
+}
+
+fn trace(world: &World<'_>, view: &View, eye: &Eye, ray: &Ray, u: &[f64; 6]) -> Sample {
+    let Some(surface) = world.closest(ray, &eye.within) else {
+        let Colour(sky) = if view.transparent { Colour([0.0; 3]) } else { world.model.sky.colour(ray.direction) };
+        return Sample {
+            colour: sky,
+            alpha: if view.transparent { 0.0 } else { 1.0 },
+            depth: f64::INFINITY,
+            normal: DVec3::ZERO,
+            point: DVec3::ZERO,
+            cost: 0.0,
+            level: 0,
+            object: 0,
+            branch: 0,
+        };
+    };
+    let lit = match view.look {
+        Look::Exact => world.exact(ray, &surface),
+        Look::Studio => world.studio(ray, &surface, u),
+    };
+    // The ground fades into the horizon.
+    let share = match &world.model.ground {
+        Some(ground) if surface.object.is_none() => ground.share(surface.point),
+        _ => 1.0,
+    };
+    let Colour(behind) = if view.transparent { Colour([0.0; 3]) } else { world.model.sky.at_horizon() };
+    Sample {
+        colour: [0, 1, 2].map(|i| lit[i] * share + behind[i] * (1.0 - share)),
+        alpha: if view.transparent { share } else { 1.0 },
+        depth: (surface.point - eye.camera.at).dot(eye.frame[2]),
+        normal: surface.normal,
+        point: surface.point,
+        cost: surface.cost,
+        level: surface.level,
+        object: surface.object.map_or(world.model.objects.len() as u32, |i| i) + 1,
+        branch: surface.object.map_or(0, |_| surface.branch + 1),
+    }
+}

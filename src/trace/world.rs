@@ -1,0 +1,335 @@
+//! A model in trees: what a ray meets.
+
+use crate::bvh::{Boxes, Cones, Entry, Ray, RoundCone, Triangle, Triangles};
+use crate::geom::Bounds;
+use crate::math::DVec3;
+use crate::model::{Dome, Frame, Instance, Model, Object, limb_frames};
+
+/// Rays from surfaces start this far off them, as a share of the world's size: more than single precision loses.
+const OFF: f64 = 2e-5;
+
+/// A model ready to be traced.
+pub struct World<'a> {
+    /// What it was made of.
+    pub model: &'a Model,
+    /// The light of the sky.
+    pub dome: Dome,
+    shapes: Vec<Shape>,
+    /// Object and instance of each box.
+    instances: Vec<(u32, Instance)>,
+    boxes: Boxes,
+    /// The first number of each object's branches among all.
+    branches: Vec<u32>,
+    /// How far rays from surfaces start off them.
+    pub(super) off: f64,
+}
+
+/// An object in its own space.
+struct Shape {
+    cones: Cones,
+    /// Balls that no segment joins.
+    lone: Vec<u32>,
+    triangles: Triangles,
+    /// The axes of limbs, where a pattern needs them.
+    frames: Vec<Frame>,
+}
+
+/// What a ray met.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    /// Distance along the ray.
+    pub t: f64,
+    /// Where it is.
+    pub point: DVec3,
+    /// Unit normal, towards where the ray came from.
+    pub normal: DVec3,
+    /// The object, or `None` for the ground.
+    pub object: Option<u32>,
+    /// The limb, counted through all objects.
+    pub branch: u32,
+    /// Path cost.
+    pub cost: f64,
+    /// The round of growth that made it.
+    pub level: u16,
+    /// The share of the material's pattern.
+    pub pattern: f64,
+    /// Seen from within a solid, which no light reaches.
+    pub is_inside: bool,
+}
+
+/// A solid that holds the camera.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Within {
+    instance: u32,
+    id: u32,
+}
+
+impl Shape {
+    fn new(object: &Object, has_pattern: bool) -> Self {
+        let mut is_joined = vec![false; object.balls.len()];
+        for &[a, b] in &object.segments {
+            is_joined[a as usize] = true;
+            is_joined[b as usize] = true;
+        }
+        let lone = (0..).zip(&is_joined).filter(|(_, joined)| !**joined).map(|(i, _)| i).collect();
+        let mesh = &object.mesh;
+        let mut shape = Self {
+            cones: Cones::new(0, |_| unreachable!("there is none")),
+            lone,
+            triangles: Triangles::new(mesh.triangles.len(), |i| triangle(object, i)),
+            frames: if has_pattern { limb_frames(object) } else { Vec::new() },
+        };
+        shape.cones = Cones::new(object.segments.len() + shape.lone.len(), |i| shape.cone(object, i as u32).0);
+        shape
+    }
+
+    /// The round cone of a hit, and its two balls.
+    fn cone(&self, object: &Object, id: u32) -> (RoundCone, [u32; 2]) {
+        let [a, b] = match object.segments.get(id as usize) {
+            Some(&segment) => segment,
+            None => [self.lone[id as usize - object.segments.len()]; 2],
+        };
+        let [from, to] = [a, b].map(|i| &object.balls[i as usize]);
+        (RoundCone { a: from.centre, ra: from.radius, b: to.centre, rb: to.radius }, [a, b])
+    }
+}
+
+fn triangle(object: &Object, i: usize) -> Triangle {
+    Triangle(object.mesh.triangles[i].map(|p| object.mesh.points[p as usize]))
+}
+
+impl<'a> World<'a> {
+    /// Puts `model` into trees.
+    #[must_use]
+    pub fn new(model: &'a Model) -> Self {
+        let has_pattern = |object: &Object| model.materials[object.material].1.pattern.is_some();
+        let shapes: Vec<Shape> = model.objects.iter().map(|o| Shape::new(o, has_pattern(o))).collect();
+        let instances: Vec<(u32, Instance)> =
+            (0..).zip(&model.objects).flat_map(|(i, o)| o.instances.iter().map(move |&place| (i, place))).collect();
+        let boxes: Vec<_> = instances
+            .iter()
+            .map(|(object, place)| {
+                let shape = &shapes[*object as usize];
+                let own = shape.cones.bounds().union(shape.triangles.bounds());
+                own.corners()
+                    .map(|p| Bounds::of_ball(place.to_world(p), 0.0))
+                    .into_iter()
+                    .fold(Bounds::EMPTY, Bounds::union)
+            })
+            .collect();
+        let mut next = 0;
+        let branches = model
+            .objects
+            .iter()
+            .map(|o| {
+                let first = next;
+                next += o.balls.iter().map(|b| b.branch + 1).max().unwrap_or(1);
+                first
+            })
+            .collect();
+        let size = model.bounds();
+        let reach = if size.is_empty() { 1.0 } else { size.min.abs().max(size.max.abs()).max_element() };
+        Self { model, dome: Dome::new(model), shapes, boxes: Boxes::new(&boxes), instances, branches, off: reach * OFF }
+    }
+
+    /// The name of each branch as [`Surface::branch`] counts them: `object.limb`.
+    #[must_use]
+    pub fn branch_names(&self) -> Vec<String> {
+        let mut names = Vec::new();
+        for object in &self.model.objects {
+            let count = object.balls.iter().map(|b| b.branch + 1).max().unwrap_or(1);
+            names.extend((0..count).map(|i| format!("{}.{i}", object.name)));
+        }
+        names
+    }
+
+    /// The solids that hold `p`: a camera there sees them from within.
+    pub(super) fn within(&self, p: DVec3) -> Vec<Within> {
+        let mut found = Vec::new();
+        for (instance, (object, place)) in (0..).zip(&self.instances) {
+            let (shape, own) = (&self.shapes[*object as usize], place.to_object(p));
+            let bounds = shape.cones.bounds();
+            if own.cmpge(bounds.min).all() && own.cmple(bounds.max).all() {
+                let object = &self.model.objects[*object as usize];
+                let count = (object.segments.len() + shape.lone.len()) as u32;
+                let holds = |id: &u32| shape.cone(object, *id).0.holds(own);
+                found.extend((0..count).filter(holds).map(|id| Within { instance, id }));
+            }
+        }
+        found
+    }
+
+    /// The nearest thing on the ray, `within` being the solids that hold its origin.
+    pub(super) fn closest(&self, ray: &Ray, within: &[Within]) -> Option<Surface> {
+        let mut ray = *ray;
+        let ground = self.ground(&ray);
+        if let Some(surface) = &ground {
+            ray.far = surface.t;
+        }
+        let mut best: Option<(u32, bool, f64, u32)> = None;
+        self.meet(&ray, &mut |instance, far| {
+            let (object, place) = &self.instances[instance as usize];
+            let shape = &self.shapes[*object as usize];
+            let mut own = to_object(&Ray { far, ..ray }, place);
+            let mut found = |hit: Option<crate::bvh::Hit>, is_mesh: bool| {
+                if let Some(hit) = hit {
+                    own.far = hit.t;
+                    best = Some((instance, is_mesh, hit.t * place.scale, hit.id));
+                }
+                own
+            };
+            let own = found(shape.cones.closest(&to_object(&Ray { far, ..ray }, place)), false);
+            if !shape.triangles.is_empty() {
+                found(shape.triangles.closest(&own), true);
+            }
+            best.map_or(far, |b| b.2.min(far))
+        });
+        let mut surface = match best {
+            Some((instance, true, t, id)) => Some(self.on_mesh(&ray, instance, t, id)),
+            Some((instance, false, t, id)) => {
+                let (object, place) = &self.instances[instance as usize];
+                let own = to_object(&ray, place);
+                let (cone, balls) = self.shapes[*object as usize].cone(&self.model.objects[*object as usize], id);
+                Some(self.on_cone(&ray, instance, t, cone.enter(&own), &cone, balls))
+            }
+            None => ground,
+        };
+        for w in within {
+            let (object, place) = &self.instances[w.instance as usize];
+            let (cone, balls) = self.shapes[*object as usize].cone(&self.model.objects[*object as usize], w.id);
+            if let Some(entry) = cone.inner(&to_object(&ray, place))
+                && surface.is_none_or(|s| entry.t * place.scale < s.t)
+            {
+                let inner = self.on_cone(&ray, w.instance, entry.t * place.scale, Some(entry), &cone, balls);
+                surface = Some(Surface { is_inside: true, ..inner });
+            }
+        }
+        surface
+    }
+
+    /// Does anything that casts shadows stand in the way?
+    pub(super) fn is_blocked(&self, ray: &Ray) -> bool {
+        let mut met = false;
+        self.meet(ray, &mut |instance, far| {
+            let (object, place) = &self.instances[instance as usize];
+            let shape = &self.shapes[*object as usize];
+            let own = to_object(ray, place);
+            met = shape.cones.is_blocked(&own) || (!shape.triangles.is_empty() && shape.triangles.is_blocked(&own));
+            if met { f64::NEG_INFINITY } else { far }
+        });
+        met
+    }
+
+    /// Shows `test` the instances near the ray; most scenes have one.
+    fn meet(&self, ray: &Ray, test: &mut dyn FnMut(u32, f64) -> f64) {
+        if self.instances.len() == 1 {
+            test(0, ray.far);
+        } else {
+            self.boxes.meet(ray, test);
+        }
+    }
+
+    fn ground(&self, ray: &Ray) -> Option<Surface> {
+        let ground = self.model.ground.as_ref()?;
+        let t = (ground.height - ray.origin.z) / ray.direction.z;
+        let point = ray.at(t);
+        let is_met = t > ray.near && t < ray.far;
+        let is_on = ground.radius.is_none_or(|r| point.x * point.x + point.y * point.y <= r * r);
+        let normal = if ray.direction.z < 0.0 { DVec3::Z } else { DVec3::NEG_Z };
+        (is_met && is_on).then_some(Surface {
+            t,
+            point,
+            normal,
+            object: None,
+            branch: 0,
+            cost: 0.0,
+            level: 0,
+            pattern: 0.0,
+            is_inside: false,
+        })
+    }
+
+    fn on_cone(
+        &self,
+        ray: &Ray,
+        instance: u32,
+        t: f64,
+        entry: Option<Entry>,
+        cone: &RoundCone,
+        balls: [u32; 2],
+    ) -> Surface {
+        let (index, place) = &self.instances[instance as usize];
+        let object = &self.model.objects[*index as usize];
+        let own = to_object(ray, place);
+        // In double precision, unless the two disagree whether it is met at all.
+        let (t, normal, share) = match entry {
+            Some(entry) => (entry.t * place.scale, entry.normal, entry.share),
+            None => (t, cone.normal_at(own.at(t / place.scale)), 1.0),
+        };
+        let [a, b] = balls.map(|i| &object.balls[i as usize]);
+        let at = if share > 0.0 { 1 } else { 0 };
+        let pattern = self.shapes[*index as usize].frames.get(balls[at] as usize).map_or(0.0, |frame| {
+            let material = &self.model.materials[object.material].1;
+            let ball = &object.balls[balls[at] as usize];
+            material.pattern.map_or(0.0, |pattern| {
+                if ball.radius < pattern.least_radius() {
+                    return pattern.mean();
+                }
+                pattern.share(frame.local(own.at(t / place.scale)) / pattern.size())
+            })
+        });
+        let normal = place.turned(normal);
+        Surface {
+            t,
+            point: ray.at(t),
+            normal: if normal.dot(ray.direction) > 0.0 { -normal } else { normal },
+            object: Some(*index),
+            branch: self.branches[*index as usize] + [a, b][at].branch,
+            cost: a.cost + (b.cost - a.cost) * share,
+            level: [a, b][at].level,
+            pattern,
+            is_inside: false,
+        }
+    }
+
+    fn on_mesh(&self, ray: &Ray, instance: u32, t: f64, id: u32) -> Surface {
+        let (index, place) = &self.instances[instance as usize];
+        let object = &self.model.objects[*index as usize];
+        let triangle = triangle(object, id as usize);
+        let (t, [v, w]) = match triangle.meet(&to_object(ray, place)) {
+            Some((t, weights)) => (t * place.scale, weights),
+            None => (t, [0.0; 2]),
+        };
+        let flat = triangle.normal();
+        let corners = object.mesh.triangles[id as usize];
+        let normal = match object.mesh.normals.get(corners[0] as usize) {
+            Some(&a) => {
+                let [b, c] = [corners[1], corners[2]].map(|i| object.mesh.normals[i as usize]);
+                (a + (b - a) * v + (c - a) * w).normalize_or(flat)
+            }
+            None => flat,
+        };
+        let normal = place.turned(normal);
+        Surface {
+            t,
+            point: ray.at(t),
+            normal: if normal.dot(ray.direction) > 0.0 { -normal } else { normal },
+            object: Some(*index),
+            branch: self.branches[*index as usize],
+            cost: 0.0,
+            level: 0,
+            pattern: 0.0,
+            is_inside: false,
+        }
+    }
+}
+
+/// The ray in the space of an object: its distances there are the world's over the scale.
+fn to_object(ray: &Ray, place: &Instance) -> Ray {
+    Ray {
+        origin: place.to_object(ray.origin),
+        direction: place.unturned(ray.direction),
+        near: ray.near / place.scale,
+        far: ray.far / place.scale,
+    }
+}
