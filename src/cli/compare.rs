@@ -13,7 +13,7 @@ use super::console::Console;
 use super::error::Failure;
 use crate::compare::{Metric, Outcome, Pair, Panel, changes, html, junit, measure, summary};
 use crate::files::{Rgba, decode_exr, decode_linear, encode_png, write_bytes};
-use crate::math::to_srgb;
+use crate::math::srgb_byte;
 use crate::raster::{Layers, filmic};
 
 /// Thresholds in a folder of expected pictures.
@@ -231,7 +231,7 @@ fn to_screen(layers: &Layers, is_hdr: bool) -> Option<Rgba> {
     let pixels = layers.pixels(["R", "G", "B"])?;
     let byte = |x: f32| {
         let linear = f64::from(x);
-        (to_srgb(if is_hdr { filmic(linear) } else { linear }) * 255.0).round() as u8
+        srgb_byte(if is_hdr { filmic(linear) } else { linear })
     };
     let bytes = pixels.iter().flat_map(|p| [byte(p[0]), byte(p[1]), byte(p[2]), 255]).collect();
     Some(Rgba { width: layers.width, height: layers.height, bytes })

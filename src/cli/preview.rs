@@ -3,10 +3,12 @@
 use std::io::{self, Cursor, Write};
 use std::path::Path;
 
+use rayon::prelude::*;
+
 use super::args::{Look, RenderArgs};
 use super::error::Failure;
 use crate::files::{Rgba, add_mattes, encode_exr, encode_png, encode_png16, write_whole};
-use crate::math::{Progress, to_srgb};
+use crate::math::{Progress, srgb_byte, to_srgb};
 use crate::model::Model;
 use crate::raster::{Layers, filmic};
 use crate::scene::Resolved;
@@ -69,7 +71,8 @@ pub fn trace(model: &Model, view: &View, progress: &Progress) -> Result<Drawn, F
     let picture = trace::render(&world, view, progress).map_err(|_| Failure::Stopped)?;
     let mut objects: Vec<String> = model.objects.iter().map(|o| o.name.clone()).collect();
     objects.push("ground".to_owned());
-    let is_filmic = view.look == trace::Look::Studio;
+    // A drawing's white is white.
+    let is_filmic = view.look == trace::Look::Studio && !model.is_flat;
     Ok(Drawn::Traced(Traced { picture, is_filmic, objects, branches: world.branch_names() }))
 }
 
@@ -81,7 +84,7 @@ impl Drawn {
             Self::Traced(traced) => Rgba {
                 width: traced.picture.width,
                 height: traced.picture.height,
-                bytes: traced.encoded(255.0).map(|v| v as u8).collect(),
+                bytes: traced.encoded(srgb_byte, |alpha| libm::floor(alpha * 255.0 + 0.5) as u8),
             },
         }
     }
@@ -113,7 +116,8 @@ impl Drawn {
                 Err(io::Error::other("only the built-in preview writes OpenEXR: leave out --with, or end it in .png"))
             }
             Self::Traced(traced) if args.bits == "16" => {
-                let values: Vec<u16> = traced.encoded(65535.0).map(|v| v as u16).collect();
+                let round = |x: f64| libm::floor(x * 65535.0 + 0.5) as u16;
+                let values = traced.encoded(|linear| round(to_srgb(linear)), round);
                 encode_png16([traced.picture.width, traced.picture.height], &values, &texts, out)
             }
             _ => encode_png(&self.to_screen(), &texts, out),
@@ -143,17 +147,18 @@ fn how(args: &RenderArgs, scene: &Resolved) -> serde_json::Value {
 }
 
 impl Traced {
-    /// Red, green, blue in sRGB and alpha, not premultiplied, from 0 to `most`, rounded.
-    fn encoded(&self, most: f64) -> impl Iterator<Item = f64> {
-        let is_filmic = self.is_filmic;
-        self.picture.pixels.iter().flat_map(move |p| {
+    /// Red, green, blue by `encode` and alpha by `round`, not premultiplied.
+    fn encoded<T: Copy + Send>(&self, encode: impl Fn(f64) -> T + Sync, round: impl Fn(f64) -> T + Sync) -> Vec<T> {
+        let pixel = |p: &[f32; 4]| {
             let alpha = f64::from(p[3]);
             let show = |c: f32| {
                 let linear = if alpha > 0.0 { f64::from(c) / alpha } else { 0.0 };
-                to_srgb(if is_filmic { filmic(linear) } else { linear })
+                encode(if self.is_filmic { filmic(linear) } else { linear })
             };
-            [show(p[0]), show(p[1]), show(p[2]), alpha].map(|v| libm::floor(v * most + 0.5))
-        })
+            [show(p[0]), show(p[1]), show(p[2]), round(alpha)]
+        };
+        let pixels: Vec<[T; 4]> = self.picture.pixels.par_iter().map(pixel).collect();
+        pixels.into_flattened()
     }
 
     /// Every channel, with mattes of objects and limbs.

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::identifier::plain;
 use crate::grow::{Mark, MarkKind};
-use crate::math::{Colour, DVec2, DVec3};
+use crate::math::{Colour, DVec2, DVec3, srgb_byte};
 use crate::model::{Camera, Material, Model, Projected};
 
 /// How a schematic is drawn.
@@ -166,7 +166,7 @@ fn ink(material: &Material) -> String {
         return "#000".to_owned();
     }
     let Colour(rgb) = material.colour;
-    let [r, g, b] = rgb.map(|c| Colour::to_srgb(c * material.emission));
+    let [r, g, b] = rgb.map(|c| srgb_byte(c * material.emission));
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 

@@ -18,4 +18,4 @@ pub use power::power;
 pub(crate) use prefetch::prefetch;
 pub use progress::{Cancelled, Progress};
 pub use random::{Stream, mix};
-pub use srgb::{from_srgb, to_srgb};
+pub use srgb::{from_srgb, srgb_byte, to_srgb};

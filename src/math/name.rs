@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use super::{from_srgb, to_srgb};
+use super::from_srgb;
 use glam::DVec3;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error;
@@ -92,12 +92,6 @@ impl Colour {
     #[must_use]
     pub fn from_srgb(rgb: [u8; 3]) -> Self {
         Self(rgb.map(|byte| from_srgb(f64::from(byte) / 255.0)))
-    }
-
-    /// The sRGB byte of a linear channel, clamped to 0 to 1.
-    #[must_use]
-    pub fn to_srgb(linear: f64) -> u8 {
-        libm::floor(to_srgb(linear) * 255.0 + 0.5) as u8
     }
 
     fn from_hex(text: &str) -> Option<Self> {

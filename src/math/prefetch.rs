@@ -1,7 +1,7 @@
 //! A hint to the cache, the project's one use of `unsafe`.
 //!
-//! Left out, `benches/plan.rs` takes 1.5 times as long at 256^3 and 1.2 times at 2048^2, and `benches/trace.rs` REPLACE
-//! (`benches/README.md`).
+//! Left out, `benches/plan.rs` takes 1.5 times as long at 256^3 and 1.2 times at 2048^2, and `benches/trace.rs` 1.1
+//! times for a million segments (`benches/README.md`).
 
 /// Bytes that a cache moves at once.
 const LINE: usize = 64;

@@ -162,7 +162,7 @@ pub enum Light {
 
 impl Light {
     /// A sun in the studio look is this much stronger than in the exact one, where constant light adds to it.
-    const SUN: f64 = 1.35;
+    const SUN: f64 = 1.6;
 
     /// Its colour in the studio look: lights without shadow are left out, since the sky takes their place.
     #[must_use]
@@ -214,7 +214,7 @@ impl Ground {
 }
 
 /// A ground fades from full to nothing over this share of its reach, from the outside.
-pub const FADE: f64 = 0.7;
+pub const FADE: f64 = 0.45;
 
 /// What is behind everything, as a scene writes it: one colour, a gradient, or a picture.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]

@@ -20,7 +20,7 @@ pub struct Dome {
 
 impl Dome {
     /// Strength of the dome in the studio look: an open, level, white surface under a white sky shows this.
-    pub const STRENGTH: f64 = 0.8;
+    pub const STRENGTH: f64 = 0.62;
 
     /// The dome of a model.
     #[must_use]

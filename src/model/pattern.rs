@@ -62,7 +62,7 @@ impl Pattern {
     /// How narrow bark's fissures are.
     pub const FISSURE: f64 = 0.9;
     /// Moss: the weight of its patches, that of the upper side, and the threshold.
-    pub const PATCH: [f64; 3] = [0.5, 1.8, 0.9];
+    pub const PATCH: [f64; 3] = [0.3, 0.9, 0.45];
 
     /// The colour drawn over the material's own.
     #[must_use]

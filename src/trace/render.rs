@@ -123,50 +123,55 @@ fn trace_tiles(world: &World<'_>, view: &View, progress: &Progress) -> Result<(P
     tiles.sort_by_key(|&(x, y)| morton(x) | morton(y) << 1);
     let ground = world.model.objects.len() as u32 + 1;
     let done = AtomicUsize::new(0);
-    let traced: Vec<Vec<Traced>> = tiles
+    let traced: Vec<Tile> = tiles
         .par_iter()
         .map(|&(tile_x, tile_y)| {
             progress.check()?;
-            let mut pixels = Vec::with_capacity((TILE * TILE) as usize);
+            let mut tile = Tile::default();
             let mut samples = Vec::new();
-            for y in tile_y * TILE..((tile_y + 1) * TILE).min(height) {
-                for x in tile_x * TILE..((tile_x + 1) * TILE).min(width) {
-                    samples.clear();
-                    sample(world, view, &eye, left + x, top + y, &mut samples);
-                    pixels.push(Traced {
-                        place: (y * width + x) as usize,
-                        pixel: mean(&samples),
-                        is_ground: samples.iter().all(|s| s.object == ground),
-                        data: view.data.then(|| data(&samples)),
-                    });
+            for (x, y) in places(tile_x, tile_y, width, height) {
+                samples.clear();
+                sample(world, view, &eye, left + x, top + y, &mut samples);
+                tile.pixels.push(mean(&samples));
+                tile.is_ground.push(samples.iter().all(|s| s.object == ground));
+                if view.data {
+                    tile.data.push(data(&samples));
                 }
             }
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             progress.report("render", done as f64 / tiles.len() as f64)?;
-            Ok(pixels)
+            Ok(tile)
         })
         .collect::<Result<_, Cancelled>>()?;
     let count = width as usize * height as usize;
     let mut picture = Picture { width, height, pixels: vec![[0.0; 4]; count], data: Vec::new() };
     let mut is_ground = vec![false; count];
-    let mut kept: Vec<Option<Data>> = vec![None; if view.data { count } else { 0 }];
-    for traced in traced.into_iter().flatten() {
-        picture.pixels[traced.place] = traced.pixel;
-        is_ground[traced.place] = traced.is_ground;
-        if traced.data.is_some() {
-            kept[traced.place] = traced.data;
+    picture.data = traced.first().and_then(|tile| tile.data.first()).map_or(Vec::new(), |&data| vec![data; count]);
+    for (tile, &(tile_x, tile_y)) in traced.into_iter().zip(&tiles) {
+        for (i, (x, y)) in places(tile_x, tile_y, width, height).enumerate() {
+            let place = (y * width + x) as usize;
+            picture.pixels[place] = tile.pixels[i];
+            is_ground[place] = tile.is_ground[i];
+            if view.data {
+                picture.data[place] = tile.data[i];
+            }
         }
     }
-    picture.data = kept.into_iter().flatten().collect();
     Ok((picture, is_ground))
 }
 
-/// A finished pixel.
-struct Traced {
-    place: usize,
-    pixel: [f32; 4],
-    is_ground: bool,
-    data: Option<Data>,
+/// A finished tile, pixel by pixel.
+#[derive(Default)]
+struct Tile {
+    pixels: Vec<[f32; 4]>,
+    is_ground: Vec<bool>,
+    data: Vec<Data>,
+}
+
+/// The pixels of a tile of a picture of this size.
+fn places(tile_x: u32, tile_y: u32, width: u32, height: u32) -> impl Iterator<Item = (u32, u32)> {
+    let rows = tile_y * TILE..((tile_y + 1) * TILE).min(height);
+    rows.flat_map(move |y| (tile_x * TILE..((tile_x + 1) * TILE).min(width)).map(move |x| (x, y)))
 }
 
 /// The bits of `x` with a gap after each.
