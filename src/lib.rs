@@ -10,13 +10,16 @@
 //! | module | makes |
 //! | --- | --- |
 //! | [`math`] | random streams, names, the progress handle |
-//! | [`raster`], [`geom`] | painted maps; shapes, strokes, round cones |
+//! | [`raster`], [`geom`] | picture buffers; shapes, strokes, round cones |
+//! | [`bvh`] | what rays hit |
 //! | [`graph`] | lattices whose weights are computed, not stored |
 //! | [`plan`](mod@plan) | least-cost paths: a [`plan::Plan`] |
 //! | [`skeleton`] | the forest of paths, with radii: a [`skeleton::Skeleton`] |
 //! | [`grow`] | the steps of a scene: a [`grow::Grown`] each |
 //! | [`model`] | what renderers and exporters read: a [`model::Model`] |
 //! | [`export`] | POV-Ray and SVG |
+//! | [`trace`] | the preview: a [`trace::Picture`] |
+//! | [`compare`] | how far pictures are apart, and reports |
 //! | [`files`] | pictures and sketches in and out; whole files or none |
 //! | [`scene`] | scenes with every mistake reported |
 //! | [`render`] | driving POV-Ray |
@@ -29,6 +32,7 @@
 //! use lichtenberg::files::embedded_scenes;
 //! use lichtenberg::math::Progress;
 //! use lichtenberg::scene::{Override, Source, grow, load, model};
+//! use lichtenberg::trace::{Look, View, World, render};
 //!
 //! let (name, text, folder) = embedded_scenes().into_iter().find(|(name, ..)| name == "elm").ok_or("no elm")?;
 //! let source = Source { name, text: text.to_owned(), folder };
@@ -42,6 +46,10 @@
 //! let mut inc = Vec::new();
 //! Pov::new(&model, &Templates::default(), "elm", scene.size, &Origin::default()).write_inc(&mut inc)?;
 //! assert!(String::from_utf8(inc)?.contains("#declare Elm_Height"));
+//!
+//! let view = View::new([64, 64], Look::Studio, 4);
+//! let picture = render(&World::new(&model), &view, &Progress::default())?;
+//! assert_eq!(picture.pixels.len(), 64 * 64);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

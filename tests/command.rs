@@ -154,6 +154,12 @@ fn bad_calls_get_one_clear_error() {
     fails(at, &["export", "twgi", "--to", "pov"], 2, &["no scene file or embedded scene"]);
     fails(at, &["render", "twig", "--crop", "0,0,9000,2"], 2, &["does not lie within", "640 by 480"]);
     fails(at, &["render", "twig", "--crop", "1,2,3"], 2, &["left, top, width, height"]);
+    fails(
+        at,
+        &["render", "twig", "--size", "9000x9000", "--max-memory", "200M", "-o", "a.exr"],
+        2,
+        &["--crop", "--max-memory"],
+    );
     fails(at, &["render", "twig", "--samples", "0"], 2, &["1..=4096"]);
     fails(at, &["render", "twig", "--show", "contours"], 2, &["--schematic"]);
     fails(at, &["render", "twig", "--with", "povray", "-o", "a.exr"], 2, &["must end in .png"]);

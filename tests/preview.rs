@@ -175,7 +175,7 @@ fn watches_the_scene() {
     wait_for("complaint", &|| fs::read_to_string(at.join("said.txt")).is_ok_and(|t| t.contains("expected a number")));
     fs::write(at.join("mine.toml"), scene.replace("#6b8c52", "#aa2020")).unwrap();
     wait_for("new picture", &|| is_whole() && fs::read(&out).unwrap() != first);
-    let red = picture(&out).bytes.chunks(4).filter(|p| p[0] > 60 && p[0] > 2 * p[1]).count();
+    let red = picture(&out).bytes.chunks(4).filter(|p| p[0] > 60 && p[0] / 2 > p[1]).count();
     assert!(red > 50, "{red} red pixels");
     Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130));

@@ -92,7 +92,8 @@ pub struct RenderArgs {
     /// How it is lit: studio has light from the whole sky and a soft sun, exact is POV-Ray's local light to the pixel
     #[arg(long, value_enum, default_value = "studio", conflicts_with = "schematic")]
     pub look: Look,
-    /// Samples a pixel, 1 for none but its middle; 8 by default in the studio look, 9 in the exact one
+    /// Samples a pixel, 1 for its middle alone; 8 by default in the studio look, 9 in the exact one, where they are a
+    /// square grid, and the middle
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096), conflicts_with = "schematic")]
     pub samples: Option<u32>,
     /// Render this part of the picture only: left, top, width, height in pixels

@@ -64,9 +64,8 @@ pub fn run(args: &CompareArgs, console: &Console) -> Result<(), Failure> {
     if let Some(folder) = &args.diff {
         for (pair, _, difference) in &results {
             if let Some(picture) = difference.as_ref().filter(|_| !pair.is_same()) {
-                let path = folder.join(Path::new(&pair.name).with_extension("flip.png"));
-                let png = png(picture);
-                write_bytes(&path, &png).map_err(|e| Failure::file("write", &path, &e))?;
+                let path = folder.join(format!("{}.flip.png", pair.name));
+                write_bytes(&path, &png(picture)).map_err(|e| Failure::file("write", &path, &e))?;
             }
         }
     }
@@ -100,10 +99,23 @@ fn read_config(args: &CompareArgs) -> Result<Config, Failure> {
         None => args.expected.join(CONFIG),
     };
     match fs::read_to_string(&path) {
-        Ok(text) => toml::from_str(&text).map_err(|e| Failure::Usage(format!("{}: {e}", path.display()))),
-        Err(_) if args.config.is_none() => Ok(Config::default()),
+        Ok(text) => {
+            let config: Config =
+                toml::from_str(&text).map_err(|e| Failure::Usage(format!("{}: {e}", path.display())))?;
+            let thresholds = config.file.values().map(|file| file.threshold).chain([config.threshold]);
+            match thresholds.flatten().find(|x| x.is_nan() || *x < 0.0) {
+                Some(x) => Err(Failure::Usage(format!("{}: a threshold is 0 or more, not {x}", path.display()))),
+                None => Ok(config),
+            }
+        }
+        Err(error) if args.config.is_none() && is_not_there(&error) => Ok(Config::default()),
         Err(error) => Err(Failure::file("read", &path, &error)),
     }
+}
+
+/// Is it no file, or, beside two files, no folder?
+fn is_not_there(error: &std::io::Error) -> bool {
+    matches!(error.kind(), std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory)
 }
 
 /// The pairs: two files, or what both folders hold.
@@ -147,10 +159,17 @@ fn list(folder: &Path, within: &Path, names: &mut BTreeSet<String>) -> std::io::
 
 /// Compares a pair; the difference in colours where there is one.
 fn compare(args: &CompareArgs, config: &Config, files: &Files, wants_panel: bool) -> (Pair, Panel, Option<Rgba>) {
+    // The most specific level that says anything of a metric decides; a threshold goes with its own level's metric.
     let own = config.file.get(&files.name).copied().unwrap_or_default();
-    let metric = args.metric.map(Metric::from).or(own.metric).or(config.metric).unwrap_or_default();
-    // A threshold belongs to the metric that it was given with.
-    let threshold = args.threshold.or(own.threshold).or(config.threshold).unwrap_or_else(|| metric.threshold());
+    let levels = [
+        (args.metric.map(Metric::from), args.threshold),
+        (own.metric, own.threshold),
+        (config.metric, config.threshold),
+    ];
+    let with_metric = levels.iter().position(|(metric, _)| metric.is_some()).unwrap_or(levels.len() - 1);
+    let metric = levels[with_metric].0.unwrap_or_default();
+    let threshold =
+        levels[..=with_metric].iter().find_map(|(_, threshold)| *threshold).unwrap_or_else(|| metric.threshold());
     let mut pair = Pair {
         name: files.name.clone(),
         outcome: Outcome::Same,
@@ -191,18 +210,21 @@ fn compare(args: &CompareArgs, config: &Config, files: &Files, wants_panel: bool
         pair.changes.extend(changes(old, new).into_iter().map(|change| format!("render: {change}")));
     }
     match measure(&expected, &actual, &args.channels, is_hdr) {
-        Ok(measures) => {
+        Ok(mut measures) => {
             if metric.of(&measures) > threshold {
                 pair.outcome = Outcome::Different;
             } else {
                 pair.changes.clear();
             }
-            let difference = heat(expected.width, expected.height, &measures.map);
+            // Of many pictures only what is asked for is kept.
+            let map = std::mem::take(&mut measures.map);
+            let wants_diff = args.diff.is_some() && pair.outcome == Outcome::Different;
+            let difference = (wants_panel || wants_diff).then(|| heat(expected.width, expected.height, &map));
             if wants_panel {
-                panel.difference = Some(png(&difference));
+                panel.difference = difference.as_ref().map(png);
             }
             pair.measures = Some(measures);
-            (pair, panel, Some(difference))
+            (pair, panel, difference.filter(|_| wants_diff))
         }
         Err(reason) => {
             // Another size is a difference; a channel that is not there cannot be compared.
@@ -227,7 +249,7 @@ fn read(path: &Path) -> Option<Result<(Layers, bool), String>> {
 }
 
 /// The colours of a picture as a screen shows them, over black.
-fn to_screen(layers: &Layers, is_hdr: bool) -> Option<Rgba> {
+pub fn to_screen(layers: &Layers, is_hdr: bool) -> Option<Rgba> {
     let pixels = layers.pixels(["R", "G", "B"])?;
     let byte = |x: f32| {
         let linear = f64::from(x);
@@ -261,7 +283,9 @@ fn say(pair: &Pair, files: &Files, console: &Console) {
     if !pair.is_same() && runs_on_github() {
         // Percent and line ends have to be escaped there.
         let text = pair.line().replace('%', "%25").replace('\n', "%0A");
-        console.line(&format!("::error file={}::{text}", files.expected.display()));
+        let annotation = format!("::error file={}::{text}", files.expected.display());
+        // Not among lines of JSON; GitHub reads both streams.
+        if console.json { console.note(&annotation) } else { console.line(&annotation) }
     }
 }
 

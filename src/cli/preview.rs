@@ -16,8 +16,8 @@ use crate::trace::{self, Picture, View, World};
 
 /// Samples a pixel where none are asked for, in the studio and the exact look.
 const SAMPLES: [u32; 2] = [8, 9];
-/// A picture of more pixels than this does not fit with all that an EXR keeps of each.
-const MOST_PIXELS: u64 = 1 << 28;
+/// Bytes that a pixel takes at the peak, and with all that an EXR keeps of it.
+const PIXEL_BYTES: [u64; 2] = [64, 640];
 
 /// A finished picture.
 pub enum Drawn {
@@ -48,8 +48,8 @@ pub fn samples(args: &RenderArgs) -> u32 {
     args.samples.unwrap_or(SAMPLES[usize::from(args.look == Look::Exact)])
 }
 
-/// What is asked for of a picture of `size`; `data` keeps what an EXR holds besides colours.
-pub fn view(args: &RenderArgs, size: [u32; 2], data: bool) -> Result<View, Failure> {
+/// What is asked for of a picture of `size`, within `max_memory` bytes; `data` keeps what an EXR holds besides colours.
+pub fn view(args: &RenderArgs, size: [u32; 2], data: bool, max_memory: u64) -> Result<View, Failure> {
     let crop = args.crop.unwrap_or([0, 0, size[0], size[1]]);
     let [x, y, width, height] = crop;
     let fits = |from: u32, length: u32, whole: u32| from.checked_add(length).is_some_and(|end| end <= whole);
@@ -59,8 +59,13 @@ pub fn view(args: &RenderArgs, size: [u32; 2], data: bool) -> Result<View, Failu
             size[0], size[1]
         )));
     }
-    if u64::from(width) * u64::from(height) > MOST_PIXELS {
-        return Err(Failure::Usage("the picture is too large: render it in parts, with --crop".to_owned()));
+    let needed = u64::from(width) * u64::from(height) * PIXEL_BYTES[usize::from(data)];
+    if needed > max_memory {
+        return Err(Failure::Usage(format!(
+            "a picture of {width} by {height} pixels needs about {} MB of memory, more than the {} MB allowed: render it in parts, with --crop, or raise --max-memory",
+            needed.div_ceil(1_000_000),
+            max_memory / 1_000_000
+        )));
     }
     Ok(View { crop, transparent: args.transparent, data, ..View::new(size, look(args), samples(args)) })
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::args::{Look, RenderArgs, Show};
+use super::compare::to_screen;
 use super::console::Console;
 use super::error::Failure;
 use super::export::{read_templates, write_pov};
@@ -13,7 +14,7 @@ use super::preview::{Drawn, is_exr, samples, trace, view};
 use super::sheet::{Tile, write_sheet};
 use super::{terminal, watch};
 use crate::export::{Pov, SvgOptions, identifier, write_svg};
-use crate::files::{Rgba, decode_png, draw_svg};
+use crate::files::{Rgba, decode_exr, decode_png, draw_svg};
 use crate::grow::MarkKind;
 use crate::math::Progress;
 use crate::render::Povray;
@@ -46,8 +47,7 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
             if args.sheet.is_none() {
                 continue;
             }
-            let bytes = fs::read(&path).map_err(|e| Failure::file("read", &path, &e))?;
-            decode_png(&bytes).map_err(|e| Failure::Usage(format!("cannot read {output}: {e}")))?
+            read_screen(&path).map_err(|e| Failure::Usage(format!("cannot read {output}: {e}")))?
         } else {
             let scene = jobs.load(job)?;
             let progress = console.progress(job.title());
@@ -123,7 +123,7 @@ pub fn draw(
         return draw_svg(&String::from_utf8_lossy(&svg), &[]).map(Drawn::Screen).map_err(Failure::Usage);
     }
     // What is wrong with the call is said before long work.
-    let view = view(args, scene.size, data)?;
+    let view = view(args, scene.size, data, jobs.max_memory())?;
     let model = jobs.model(scene, &[], console, progress)?;
     if args.with.is_none() {
         return trace(&model, &view, progress);
@@ -152,6 +152,15 @@ pub fn draw(
     let picture =
         decode_png(&picture).map_err(|e| Failure::Outside(format!("povray's picture cannot be read: {e}")))?;
     Ok(Drawn::Screen(cut(&picture, view.crop)))
+}
+
+/// A picture that is there already, as a screen shows it.
+fn read_screen(path: &Path) -> Result<Rgba, String> {
+    let bytes = fs::read(path).map_err(|e| e.to_string())?;
+    if !is_exr(path) {
+        return decode_png(&bytes);
+    }
+    to_screen(&decode_exr(&bytes)?, true).ok_or_else(|| "it has no channels R, G and B".to_owned())
 }
 
 /// A part of a picture: left, top, width, height.

@@ -16,6 +16,7 @@ use super::preview::{Drawn, is_exr, trace, view};
 use super::render::{draw, report};
 use super::terminal;
 use crate::math::Progress;
+use crate::trace::View;
 
 /// The first picture is this many times smaller, with one sample a pixel.
 const COARSE: u32 = 4;
@@ -53,7 +54,7 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
     .map_err(|error| Failure::Usage(format!("cannot watch for changes: {error}")))?;
     let folder = file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     watcher
-        .watch(folder, RecursiveMode::NonRecursive)
+        .watch(folder, RecursiveMode::Recursive)
         .map_err(|error| Failure::Usage(format!("cannot watch {}: {error}", folder.display())))?;
 
     loop {
@@ -68,7 +69,7 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
                     outdated.store(true, Ordering::Relaxed);
                 }
                 if work.is_finished() {
-                    return work.join().unwrap_or(Err(Failure::Stopped));
+                    return work.join().unwrap_or_else(|_| Err(Failure::Usage("rendering broke off".to_owned())));
                 }
             }
         });
@@ -134,15 +135,14 @@ fn once(
     if args.with.is_some() || args.schematic {
         return finish(draw(args, &jobs, job, &scene, false, threads, console, progress)?);
     }
-    let fine = view(args, scene.size, is_exr(output))?;
+    let fine = view(args, scene.size, is_exr(output), jobs.max_memory())?;
     let model = jobs.model(&scene, &[], console, progress)?;
     let less = |x: u32| (x / COARSE).max(1);
-    let coarse = crate::trace::View {
-        size: fine.size.map(less),
-        crop: [fine.crop[0] / COARSE, fine.crop[1] / COARSE, less(fine.crop[2]), less(fine.crop[3])],
-        samples: 1,
-        ..fine
-    };
+    let size = fine.size.map(less);
+    // A corner that rounding would put outside lies at the edge.
+    let corner = [0, 1].map(|i| (fine.crop[i] / COARSE).min(size[i] - 1));
+    let extent = [0, 1].map(|i| less(fine.crop[i + 2]).min(size[i] - corner[i]));
+    let coarse = View { size, crop: [corner[0], corner[1], extent[0], extent[1]], samples: 1, ..fine };
     finish(trace(&model, &coarse, progress)?)?;
     finish(trace(&model, &fine, progress)?)
 }

@@ -85,7 +85,9 @@ pub fn encode_exr(picture: &Layers, out: impl Write + Seek) -> io::Result<()> {
         .iter()
         .map(|c| {
             let samples = if c.is_half {
-                FlatSamples::F16(c.values.iter().map(|&x| f16::from_f32(x)).collect())
+                // Nothing becomes infinite by having fewer bits.
+                let most = |x: &f32| if x.is_finite() { x.clamp(-65504.0, 65504.0) } else { *x };
+                FlatSamples::F16(c.values.iter().map(most).map(f16::from_f32).collect())
             } else {
                 FlatSamples::F32(c.values.clone())
             };
@@ -94,7 +96,7 @@ pub fn encode_exr(picture: &Layers, out: impl Write + Seek) -> io::Result<()> {
         .collect();
     let mut attributes = LayerAttributes::default();
     for (keyword, text) in &picture.texts {
-        let value = Text::new_or_none(text).unwrap_or_default();
+        let value = Text::new_or_none(ascii(text)).unwrap_or_default();
         match keyword.as_str() {
             "software" => attributes.software_name = Some(value),
             "comments" => attributes.comments = Some(value),
@@ -111,6 +113,19 @@ pub fn encode_exr(picture: &Layers, out: impl Write + Seek) -> io::Result<()> {
         exr::error::Error::Io(error) => error,
         error => io::Error::other(error.to_string()),
     })
+}
+
+/// Text in ASCII, which is all that attributes are sure to keep: other characters as in JSON, `\\u6728`.
+fn ascii(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c.is_ascii() {
+            out.push(c);
+        } else {
+            c.encode_utf16(&mut [0; 2]).iter().for_each(|unit| out.push_str(&format!("\\u{unit:04x}")));
+        }
+    }
+    out
 }
 
 /// The sky in an OpenEXR or Radiance HDR picture: its `R`, `G`, `B`, twice as wide as high.
@@ -161,6 +176,10 @@ mod tests {
         assert_eq!(decode_exr(&bytes).unwrap(), picture);
         assert!(decode_exr(&bytes[..bytes.len() - 9]).is_err());
         assert!(decode_exr(b"no picture").is_err());
+        assert_eq!(
+            serde_json::from_str::<String>(&format!("\"{}\"", ascii("\u{6728} elm \u{1f333}"))).unwrap(),
+            "\u{6728} elm \u{1f333}"
+        );
         assert!(decode_panorama(&bytes).is_err());
     }
 }

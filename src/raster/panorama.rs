@@ -73,16 +73,24 @@ impl Panorama {
     /// with more than `most`.
     #[must_use]
     pub fn mean(&self, about: DVec3, cos: f64, most: f64) -> [f64; 3] {
+        let columns: Vec<[f64; 2]> = (0..self.width)
+            .map(|x| std::f64::consts::TAU * ((f64::from(x) + 0.5) / f64::from(self.width) - 0.5))
+            .map(|turn| [libm::cos(turn), libm::sin(turn)])
+            .collect();
         let mut sum = [0.0; 3];
         let mut weight = 0.0;
         for y in 0..self.height {
             let rise = std::f64::consts::PI * (0.5 - (f64::from(y) + 0.5) / f64::from(self.height));
             let (z, r) = (libm::sin(rise), libm::cos(rise));
-            for x in 0..self.width {
-                let turn = std::f64::consts::TAU * ((f64::from(x) + 0.5) / f64::from(self.width) - 0.5);
-                let d = DVec3::new(r * libm::cos(turn), r * libm::sin(turn), z);
+            // The whole row is farther away than the cap is wide.
+            let flat = libm::sqrt((1.0 - about.z * about.z).max(0.0));
+            if z * about.z + r * flat < cos {
+                continue;
+            }
+            for (x, [cos_turn, sin_turn]) in (0..).zip(&columns) {
+                let d = DVec3::new(r * cos_turn, r * sin_turn, z);
                 if d.dot(about) >= cos {
-                    let pixel = self.pixels[(y * self.width + x) as usize];
+                    let pixel = self.pixels[y as usize * self.width as usize + x];
                     (0..3).for_each(|c| sum[c] += f64::from(pixel[c]).min(most) * r);
                     weight += r;
                 }

@@ -197,7 +197,8 @@ fn sample(world: &World<'_>, view: &View, eye: &Eye, x: u32, y: u32, samples: &m
         }
         Look::Studio => {
             for u in numbers(x, y, view.samples) {
-                samples.push(take(u[0], u[1], &u));
+                let [dx, dy] = if view.samples == 1 { [0.5; 2] } else { [u[0], u[1]] };
+                samples.push(take(dx, dy, &u));
                 if samples.len() == FIRST && samples.iter().all(|s| s.object == 0) {
                     return;
                 }

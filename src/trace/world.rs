@@ -318,7 +318,8 @@ impl<'a> World<'a> {
             branch: self.branches[*index as usize],
             cost: 0.0,
             level: 0,
-            pattern: 0.0,
+            // Patterns follow limbs; a mesh has none.
+            pattern: self.model.materials[object.material].1.pattern.map_or(0.0, |pattern| pattern.mean()),
             is_inside: false,
         }
     }
