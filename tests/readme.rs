@@ -3,9 +3,11 @@
 mod support;
 
 use std::fs;
+use std::path::Path;
 use std::process::Command;
+use std::time::{Duration, Instant};
 
-use support::{require_povray, root, succeed_in, text};
+use support::{lichtenberg, require_povray, root, run_in, succeed_in, text};
 
 /// The fenced blocks of the README in this language.
 fn blocks(language: &str) -> Vec<String> {
@@ -25,11 +27,18 @@ fn the_tour_works() {
     for line in blocks("sh").iter().flat_map(|block| block.lines()) {
         let Some(line) = line.split('#').next().and_then(|l| l.trim().strip_prefix("lichtenberg ")) else { continue };
         let mut args: Vec<&str> = line.split_whitespace().collect();
-        if args[0] == "render" {
+        if args[0] == "render" && !args.contains(&"--size") {
             args.extend(["--size", "64x48"]);
         }
-        succeed_in(folder.path(), &args);
         commands += 1;
+        if args.contains(&"--watch") {
+            watch(folder.path(), &args);
+            continue;
+        }
+        let output = run_in(folder.path(), &args);
+        // Nothing has been accepted when pictures are first compared: the answer is no.
+        let is_first = args[0] == "compare" && !args.contains(&"--update");
+        assert_eq!(output.status.code(), Some(i32::from(is_first)), "{line}: {}", text(&output.stderr));
     }
     assert!(commands >= 10);
     // And the snippet, on the export that the last of them made.
@@ -45,6 +54,18 @@ fn the_tour_works() {
         .unwrap();
     let said = text(&output.stderr);
     assert!(output.status.success() && !said.contains("Warning"), "{said}");
+}
+
+/// It goes on until it is interrupted, and has made its picture by then.
+fn watch(folder: &Path, args: &[&str]) {
+    let mut child = lichtenberg().current_dir(folder).args(args).spawn().unwrap();
+    let begun = Instant::now();
+    while !folder.join("mine.png").exists() {
+        assert!(begun.elapsed() < Duration::from_secs(60), "no picture");
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130));
 }
 
 #[test]
