@@ -7,9 +7,13 @@ use std::process::{Command, Output};
 use lichtenberg::files::embedded_scenes;
 use lichtenberg::scene::{Override, Resolved, Source, load};
 
-/// The command under test.
+/// The command under test, not told that CI runs it: only a test says so.
 pub fn lichtenberg() -> Command {
-    Command::new(env!("CARGO_BIN_EXE_lichtenberg"))
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lichtenberg"));
+    for name in ["CI", "GITHUB_ACTIONS", "GITHUB_STEP_SUMMARY"] {
+        command.env_remove(name);
+    }
+    command
 }
 
 /// Runs the command in `folder` with `args`.
