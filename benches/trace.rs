@@ -75,6 +75,13 @@ fn time<T>(mut work: impl FnMut() -> T) -> f64 {
     )
 }
 
+/// A line of what the system knows of this process, in kilobytes; 0 where there is none.
+fn memory(key: &str) -> u64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix(key));
+    line.and_then(|line| line.split_whitespace().next()?.parse().ok()).unwrap_or(0)
+}
+
 fn write_floats(path: &Path, numbers: impl Iterator<Item = f64>) {
     let mut out = std::io::BufWriter::new(fs::File::create(path).expect("a file"));
     for x in numbers {
@@ -99,7 +106,12 @@ fn main() {
     let embree = embree(folder.path());
     for count in [10_000, 100_000, 1_000_000] {
         let all = tree(count);
+        let before = memory("VmRSS:");
         let cones = Cones::new(count, |i| all[i]);
+        println!(
+            "{count:>8} ours    {} MB more at the peak of building",
+            memory("VmHWM:").saturating_sub(before) / 1000
+        );
         let rays = camera();
         let [shadow, ambient] = secondary(&cones, &all, &rays);
         let build = time(|| Cones::new(count, |i| all[i]));

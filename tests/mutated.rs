@@ -7,6 +7,7 @@ use lichtenberg::files::embedded_scenes;
 use lichtenberg::math::Progress;
 use lichtenberg::scene::{Source, grow, load, model};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 const WORDS: &[&str] = &[
     "nan",
@@ -49,7 +50,13 @@ fn small(text: &str) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(3000))]
+    // The same cases every time: what CI finds must be there for whoever looks.
+    #![proptest_config(ProptestConfig {
+        cases: 3000,
+        rng_seed: RngSeed::Fixed(2008),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     #[test]
     fn mutated_scenes_do_no_harm(
@@ -93,7 +100,9 @@ proptest! {
                     let mut out = Vec::new();
                     Pov::new(&model, &Templates::default(), "x", [64, 48], &Origin::default()).write_inc(&mut out).unwrap();
                     let text = String::from_utf8(out).unwrap();
-                    prop_assert!(!text.contains("NaN") && !text.contains("inf,"));
+                    // Comments hold the scene's own words.
+                    let is_number = |line: &&str| !line.trim_start().starts_with("//");
+                    prop_assert!(text.lines().filter(is_number).all(|l| !l.contains("NaN") && !l.contains("inf")));
                 }
             }
         }

@@ -1,18 +1,24 @@
-//! Building trees: `obvhs` clusters the boxes, and its binary tree is collapsed to eight children a node.
+//! Building trees: `obvhs` clusters the boxes, piece by piece, and its binary trees are collapsed to eight children a
+//! node.
 
 use obvhs::aabb::Aabb as Box2;
 use obvhs::bvh2::node::Bvh2Node;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+use rayon::prelude::*;
 
-use super::tree::{Aabb, Child, STACK, Tree, WIDTH};
+use super::collapse::{Wide, collapse};
+
+use super::tree::{Aabb, Child, STACK, WIDTH};
 
 /// Slots of the table in which boxes about the same middle are noticed, as a power of 2.
 const TABLE_BITS: u32 = 16;
 /// More boxes than this about middles that others have make clustering slow: it goes quadratic on coincident boxes.
 const MOST_COINCIDENT: usize = 4096;
+/// Boxes that are clustered at once: few enough that what clustering needs besides (200 bytes each) is little.
+const PIECE: usize = 1 << 16;
 
 /// Fewer boxes than [`MOST_COINCIDENT`] have another one's middle, as far as a small table can tell.
-pub(super) fn is_spread(boxes: &[Aabb]) -> bool {
+pub(super) fn is_spread<'a>(boxes: impl Iterator<Item = &'a Aabb>) -> bool {
     let mut table = vec![0_u32; 1 << TABLE_BITS];
     let mut seen = 0;
     for b in boxes {
@@ -27,148 +33,134 @@ pub(super) fn is_spread(boxes: &[Aabb]) -> bool {
     seen < MOST_COINCIDENT
 }
 
-/// The tree over `boxes`, and the boxes of each block: the eight slots of a block hold indices of boxes, or
-/// [`EMPTY`]. Boxes in the tree are grown by `pad`.
-pub(super) fn build(boxes: &[Aabb], pad: f32) -> (Tree, Vec<[u32; WIDTH]>) {
-    if boxes.is_empty() {
-        return (Tree::default(), Vec::new());
-    }
-    if is_spread(boxes) {
-        let (nodes, order) = cluster(boxes);
-        let made = collapse(&nodes, &order, pad);
-        if made.2 <= STACK {
-            return (made.0, made.1);
-        }
-    }
-    let (nodes, order) = halve(boxes);
-    let (tree, blocks, _) = collapse(&nodes, &order, pad);
-    (tree, blocks)
+/// A binary tree; its leaves are ranges of `order`.
+pub(super) struct Binary {
+    pub nodes: Vec<Bvh2Node>,
+    pub order: Vec<u32>,
 }
 
 /// A slot of a block without a primitive.
 pub(super) const EMPTY: u32 = u32::MAX;
 
-/// The binary tree by locally-ordered clustering (reinsertion pays nothing once it is collapsed: `benches/README.md`), and the order of its primitives.
-fn cluster(boxes: &[Aabb]) -> (Vec<Bvh2Node>, Vec<u32>) {
-    let boxes: Vec<Box2> = boxes.iter().map(|b| Box2::new(b.min.into(), b.max.into())).collect();
-    let indices = (0..boxes.len() as u32).collect();
-    let bvh =
-        PlocBuilder::with_capacity(boxes.len()).build(PlocSearchDistance::Low, &boxes, indices, SortPrecision::U64, 2);
-    drop(boxes);
-    (bvh.nodes, bvh.primitive_indices)
+/// The tree over `boxes`, and the boxes of each block: the eight slots of a block hold indices of boxes, or
+/// [`EMPTY`]. Boxes in the tree are grown by `pad`.
+pub(super) fn build(boxes: &[Aabb], pad: f32) -> Wide {
+    if boxes.is_empty() {
+        return Wide::default();
+    }
+    let mut top = halve(boxes, (0..boxes.len() as u32).collect(), PIECE);
+    let (nodes, order) = (&mut top.nodes, &top.order);
+    let leaves: Vec<usize> = (0..nodes.len()).filter(|&i| nodes[i].is_leaf()).collect();
+    let indices = |&i: &usize| {
+        let first = nodes[i].first_index as usize;
+        &order[first..first + nodes[i].prim_count as usize]
+    };
+    let mut pieces: Vec<Wide> = leaves.par_iter().map(|leaf| piece(boxes, indices(leaf), pad)).collect();
+    if pieces.len() == 1 {
+        return pieces.remove(0);
+    }
+    for (piece, leaf) in (0..).zip(leaves) {
+        nodes[leaf].first_index = piece;
+    }
+    let mut blocks = Vec::with_capacity(pieces.iter().map(|piece| piece.blocks.len()).sum());
+    let mut deepest = 0;
+    let mut whole = collapse(&top, PIECE as u32, by_count, pad, |tree, _, leaf| {
+        let piece = std::mem::take(&mut pieces[leaf.first_index as usize]);
+        let root = tree.graft(piece.tree, blocks.len() as u32);
+        blocks.extend(piece.blocks);
+        deepest = deepest.max(piece.waiting);
+        Child::Node(root)
+    });
+    whole.blocks = blocks;
+    whole.waiting += deepest;
+    debug_assert!(whole.waiting <= STACK);
+    whole
 }
 
-/// The binary tree by halving the longest side at the median: balanced whatever the boxes are.
-fn halve(boxes: &[Aabb]) -> (Vec<Bvh2Node>, Vec<u32>) {
-    let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
-    let mut nodes = vec![Bvh2Node::default()];
-    let mut open = vec![(0_usize, 0..boxes.len())];
-    while let Some((at, range)) = open.pop() {
-        let bounds = range.clone().fold(Box2::empty(), |sum, i| {
-            let b = &boxes[order[i] as usize];
-            sum.union(&Box2::new(b.min.into(), b.max.into()))
+/// The tree over some of the boxes.
+fn piece(boxes: &[Aabb], indices: &[u32], pad: f32) -> Wide {
+    let with_blocks = |binary: &Binary, weight: fn(&Bvh2Node, u32) -> f32| {
+        let mut blocks = Vec::with_capacity(indices.len() / 4);
+        let mut wide = collapse(binary, WIDTH as u32, weight, pad, |_, binary, leaf| {
+            blocks.push(gather(binary, leaf));
+            Child::Block((blocks.len() - 1) as u32)
         });
-        if range.len() == 1 {
-            nodes[at] = Bvh2Node::new(bounds, 1, range.start as u32);
+        wide.blocks = blocks;
+        wide
+    };
+    if is_spread(indices.iter().map(|&i| &boxes[i as usize])) {
+        let wide = with_blocks(&cluster(boxes, indices), |node, _| node.aabb().half_area());
+        // Half of the stack is the top's.
+        if wide.waiting <= STACK / 2 {
+            return wide;
+        }
+    }
+    with_blocks(&halve(boxes, indices.to_vec(), 1), by_count)
+}
+
+/// The weight of a node that keeps a tree shallow.
+fn by_count(_: &Bvh2Node, count: u32) -> f32 {
+    count as f32
+}
+
+fn to_box2(b: &Aabb) -> Box2 {
+    Box2::new(b.min.into(), b.max.into())
+}
+
+/// The binary tree by locally-ordered clustering (reinsertion pays nothing once it is collapsed:
+/// `benches/README.md`).
+fn cluster(boxes: &[Aabb], indices: &[u32]) -> Binary {
+    let own: Vec<Box2> = indices.iter().map(|&i| to_box2(&boxes[i as usize])).collect();
+    let all = (0..own.len() as u32).collect();
+    let bvh = PlocBuilder::with_capacity(own.len()).build(PlocSearchDistance::Low, &own, all, SortPrecision::U64, 2);
+    let order = bvh.primitive_indices.iter().map(|&i| indices[i as usize]).collect();
+    Binary { nodes: bvh.nodes, order }
+}
+
+/// The binary tree by halving the longest side at the median until a leaf holds at most `most`: balanced whatever the
+/// boxes are.
+fn halve(boxes: &[Aabb], mut order: Vec<u32>, most: usize) -> Binary {
+    let mut nodes = vec![Bvh2Node::default()];
+    let mut open = vec![(0_usize, 0..order.len())];
+    while let Some((at, range)) = open.pop() {
+        let whole = order[range.clone()].iter().fold(Aabb::EMPTY, |sum, &i| sum.union(&boxes[i as usize]));
+        if range.len() <= most {
+            nodes[at] = Bvh2Node::new(to_box2(&whole), range.len() as u32, range.start as u32);
             continue;
         }
-        let size = bounds.max - bounds.min;
+        let size = [0, 1, 2].map(|i| whole.max[i] - whole.min[i]);
         let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
         let middle = |i: u32| boxes[i as usize].min[axis] + boxes[i as usize].max[axis];
         let half = range.len() / 2;
         order[range.clone()]
             .select_nth_unstable_by(half, |&a, &b| middle(a).total_cmp(&middle(b)).then_with(|| a.cmp(&b)));
         let first = nodes.len();
-        nodes[at] = Bvh2Node::new(bounds, 0, first as u32);
+        nodes[at] = Bvh2Node::new(to_box2(&whole), 0, first as u32);
         nodes.extend([Bvh2Node::default(); 2]);
         open.push((first, range.start..range.start + half));
         open.push((first + 1, range.start + half..range.end));
     }
-    (nodes, order)
-}
-
-/// Eight children a node: the largest inner child gives way to its own two as long as there is room. Returns the
-/// tree, the blocks, and how many children can wait during a traversal.
-fn collapse(nodes: &[Bvh2Node], order: &[u32], pad: f32) -> (Tree, Vec<[u32; WIDTH]>, usize) {
-    let counts = count(nodes);
-    let mut tree = Tree::default();
-    let mut blocks = Vec::with_capacity(order.len() / 4);
-    let mut most_waiting = 0;
-    let root = tree.add();
-    let mut open = vec![(0_u32, root, 0_usize)];
-    let is_small = |i: u32| counts[i as usize] <= WIDTH as u32;
-    while let Some((from, to, waiting)) = open.pop() {
-        let mut children = [from; WIDTH];
-        let mut len = 1;
-        while len < WIDTH {
-            // While anything is larger than a block, that is opened first.
-            let area = |i: &usize| nodes[children[*i] as usize].aabb().half_area();
-            let large = (0..len).filter(|&i| !is_small(children[i])).max_by(|a, b| area(a).total_cmp(&area(b)));
-            let Some(largest) = large else { break };
-            let first = nodes[children[largest] as usize].first_index;
-            children[largest] = first;
-            children[len] = first + 1;
-            len += 1;
-        }
-        most_waiting = most_waiting.max(waiting + len);
-        for (slot, &child) in children[..len].iter().enumerate() {
-            let bounds = nodes[child as usize].aabb();
-            let bounds = Aabb { min: bounds.min.to_array(), max: bounds.max.to_array() };
-            let to_child = if is_small(child) {
-                blocks.push(gather(nodes, order, child));
-                Child::Block((blocks.len() - 1) as u32)
-            } else {
-                let node = tree.add();
-                open.push((child, node, waiting + len - 1));
-                Child::Node(node)
-            };
-            tree.set(to, slot, &bounds.pad(pad), to_child);
-        }
-    }
-    (tree, blocks, most_waiting)
-}
-
-/// How many primitives are below each node.
-fn count(nodes: &[Bvh2Node]) -> Vec<u32> {
-    let mut counts = vec![0; nodes.len()];
-    let mut open = vec![0_u32];
-    let mut seen = Vec::with_capacity(nodes.len());
-    while let Some(i) = open.pop() {
-        seen.push(i);
-        let node = &nodes[i as usize];
-        if node.is_leaf() {
-            counts[i as usize] = node.prim_count;
-        } else {
-            open.extend([node.first_index, node.first_index + 1]);
-        }
-    }
-    for &i in seen.iter().rev() {
-        let node = &nodes[i as usize];
-        if !node.is_leaf() {
-            let first = node.first_index as usize;
-            counts[i as usize] = counts[first] + counts[first + 1];
-        }
-    }
-    counts
+    Binary { nodes, order }
 }
 
 /// The primitives below a node that holds a block's worth.
-fn gather(nodes: &[Bvh2Node], order: &[u32], root: u32) -> [u32; WIDTH] {
+fn gather(binary: &Binary, root: &Bvh2Node) -> [u32; WIDTH] {
     let mut block = [EMPTY; WIDTH];
     let mut len = 0;
-    let mut open = [root; WIDTH + 1];
+    let mut open = [*root; WIDTH + 1];
     let mut waiting = 1;
     while waiting > 0 {
         waiting -= 1;
-        let node = &nodes[open[waiting] as usize];
+        let node = open[waiting];
         if node.is_leaf() {
             for i in 0..node.prim_count {
-                block[len] = order[(node.first_index + i) as usize];
+                block[len] = binary.order[(node.first_index + i) as usize];
                 len += 1;
             }
         } else {
-            open[waiting] = node.first_index;
-            open[waiting + 1] = node.first_index + 1;
+            let first = node.first_index as usize;
+            open[waiting] = binary.nodes[first];
+            open[waiting + 1] = binary.nodes[first + 1];
             waiting += 2;
         }
     }

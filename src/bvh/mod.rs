@@ -6,6 +6,7 @@
 //! ones by the thousand are kept once, and the depth of the tree is bounded.
 
 mod build;
+mod collapse;
 mod queries;
 mod ray;
 mod round_cone;

@@ -6,6 +6,7 @@ use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x8};
 use rayon::prelude::*;
 
 use super::build::{self, EMPTY};
+use super::collapse::Wide;
 use super::tree::{Aabb, Beam, Leaf, Tree, WIDTH};
 use super::{Hit, Ray};
 use crate::geom::Bounds;
@@ -72,23 +73,25 @@ impl<P: Primitive<N>, const N: usize> Queries<P, N> {
     /// [`Queries::new`] for a chosen instruction set; all give the same hits.
     #[must_use]
     pub fn with_level(level: Level, count: usize, primitive: impl Fn(usize) -> P + Sync) -> Self {
-        let packed: Vec<Option<[f32; N]>> = (0..count).into_par_iter().map(|i| primitive(i).pack()).collect();
-        let mut ids: Vec<u32> = (0..count as u32).filter(|&i| packed[i as usize].is_some()).collect();
-        let of = |i: u32| packed[i as usize].unwrap_or([f32::NAN; N]);
+        // Packed again wherever it is needed: cheaper than the memory.
+        let pack = |i: u32| primitive(i as usize).pack();
+        let mut ids: Vec<u32> = (0..count as u32).into_par_iter().filter(|&i| pack(i).is_some()).collect();
+        let of = |i: u32| pack(i).unwrap_or([f32::NAN; N]);
         let bounds = |i: &u32| {
             let [min, max] = P::bounds(&of(*i));
             Aabb { min, max }
         };
         let mut boxes: Vec<Aabb> = ids.par_iter().map(bounds).collect();
-        if !build::is_spread(&boxes) {
+        if !build::is_spread(boxes.iter()) {
             // Identical ones are seen as one: the first.
-            let bits = |i: u32| of(i).map(f32::to_bits);
-            ids.par_sort_unstable_by_key(|&i| (bits(i), i));
-            ids.dedup_by_key(|i| bits(*i));
+            let mut keyed: Vec<_> = ids.par_iter().map(|&i| (of(i).map(f32::to_bits), i)).collect();
+            keyed.par_sort_unstable();
+            keyed.dedup_by_key(|(bits, _)| *bits);
+            ids = keyed.into_iter().map(|(_, i)| i).collect();
             boxes = ids.par_iter().map(bounds).collect();
         }
         let whole = boxes.iter().fold(Aabb::EMPTY, Aabb::union);
-        let (tree, mut order) = build::build(&boxes, whole.size() * PAD);
+        let Wide { tree, blocks: mut order, .. } = build::build(&boxes, whole.size() * PAD);
         drop(boxes);
         let block = |slots: &mut [u32; WIDTH]| {
             let mut block = Block { lanes: [[f32::NAN; WIDTH]; N] };
@@ -233,7 +236,7 @@ impl Boxes {
         let corner = |p: DVec3| p.to_array().map(|x| x as f32);
         let boxes: Vec<Aabb> = boxes.iter().map(|b| Aabb { min: corner(b.min), max: corner(b.max) }).collect();
         let whole = boxes.iter().fold(Aabb::EMPTY, Aabb::union);
-        let (tree, blocks) = build::build(&boxes, whole.size() * PAD);
+        let Wide { tree, blocks, .. } = build::build(&boxes, whole.size() * PAD);
         Self { level: Level::new(), tree, blocks, middle: whole.middle() }
     }
 

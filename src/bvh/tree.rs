@@ -143,6 +143,18 @@ impl Tree {
         };
     }
 
+    /// Takes in another tree, whose blocks are numbered from `blocks` on from now; returns its root.
+    pub fn graft(&mut self, other: Self, blocks: u32) -> u32 {
+        let root = self.nodes.len() as u32;
+        self.nodes.extend(other.nodes.into_iter().map(|mut node| {
+            for child in &mut node.children {
+                *child += if *child & BLOCK == 0 { root } else { blocks };
+            }
+            node
+        }));
+        root
+    }
+
     /// Shows `leaf` the blocks that the ray meets: nearest first where `sorted`, else in any order.
     #[inline(always)]
     pub fn walk<S: Simd, L: Leaf, const SORTED: bool>(&self, beam: &Beam<S>, mut far: f32, leaf: &mut L) {
