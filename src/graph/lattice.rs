@@ -252,6 +252,18 @@ impl<const N: usize> Lattice<N> {
         self.is_open(node).then_some(node)
     }
 
+    /// [`Lattice::nearest`], also for a place that is off the window by less than a step, as those at the border of a
+    /// shape may be.
+    #[must_use]
+    pub fn nearest_within(&self, position: DVec3) -> Option<Node> {
+        self.nearest(position).or_else(|| {
+            let last = [0, 1, 2].map(|axis| self.window.size[axis] - 1);
+            let inside = position.clamp(self.window.position([0; 3]), self.window.position(last));
+            let is_near = (inside - position).abs().max_element() < self.window.spacing;
+            is_near.then(|| self.nearest(inside)).flatten()
+        })
+    }
+
     /// May paths enter `node`?
     #[must_use]
     pub fn is_open(&self, node: Node) -> bool {

@@ -27,6 +27,9 @@ const POSITIVE: [[i32; 3]; 13] = [
 ];
 
 impl Neighbours {
+    /// All eight around a node of the plane.
+    pub const EIGHT: Self = Self(8);
+
     /// The neighbourhood of `count`, or `None` if there is none.
     #[must_use]
     pub const fn new(count: u32) -> Option<Self> {

@@ -6,11 +6,13 @@
 mod buckets;
 mod cells;
 mod front;
+mod mean;
 mod search;
 #[cfg(test)]
 mod search_tests;
 mod shared;
 mod tree;
 
-pub use search::{Goal, PlanError, bytes_needed, plan};
+pub use mean::mean_cost;
+pub use search::{Goal, PlanError, bytes_needed, plan, plan_delayed};
 pub use tree::Plan;

@@ -71,17 +71,34 @@ pub fn plan<'g, G: Graph>(
     progress: &Progress,
 ) -> Result<Plan<'g, G>, PlanError> {
     let threads = if graph.is_wide() { rayon::current_num_threads().min(MOST_THREADS) } else { 1 };
-    plan_on(graph, generators, goal, threads, progress)
+    plan_on(graph, generators, &[], goal, threads, progress)
 }
 
-/// [`plan`] on so many threads.
+/// [`plan`] from `generators` and from `later` ones, each of which starts with the cost (fixed-point, up to 2^25) beside it. Paths
+/// end at either, and [`Plan::cost`] counts from there.
+///
+/// # Errors
+/// As [`plan`].
+pub fn plan_delayed<'g, G: Graph>(
+    graph: &'g G,
+    generators: &[Node],
+    later: &[(Node, u64)],
+    goal: Goal<'_>,
+    progress: &Progress,
+) -> Result<Plan<'g, G>, PlanError> {
+    plan_on(graph, generators, later, goal, 1, progress)
+}
+
+/// [`plan`] on so many threads; those that start later need one.
 pub(super) fn plan_on<'g, G: Graph>(
     graph: &'g G,
     generators: &[Node],
+    later: &[(Node, u64)],
     goal: Goal<'_>,
     threads: usize,
     progress: &Progress,
 ) -> Result<Plan<'g, G>, PlanError> {
+    debug_assert!(later.is_empty() || threads == 1);
     let width = Width::new(graph.weight_range(), G::SLOT_BITS)?;
     let cells = Cells::new(graph.cells());
     let mut buckets = Buckets::new(width.count());
@@ -103,7 +120,11 @@ pub(super) fn plan_on<'g, G: Graph>(
         // Rounded down to a power of two.
         shared::run(front, buckets, wanted, 1 << threads.ilog2(), progress)?
     } else {
-        run_alone(&front, buckets, Wanted::new(wanted), progress)?
+        // Costs are compared modulo 2^32: none may start farther from its neighbours than that allows.
+        let most = 1_u64 << (30 - G::SLOT_BITS);
+        let mut later: Vec<(Node, u64)> = later.iter().map(|&(node, cost)| (node, cost.min(most))).collect();
+        later.sort_unstable_by_key(|&(node, cost)| (cost, node));
+        run_alone(&front, buckets, &later, Wanted::new(wanted), progress)?
     };
     Ok(Plan::new(graph, cells, settled))
 }
@@ -112,17 +133,30 @@ pub(super) fn plan_on<'g, G: Graph>(
 fn run_alone<G: Graph>(
     front: &Front<'_, G>,
     mut buckets: Buckets,
+    mut later: &[(Node, u64)],
     mut wanted: Wanted,
     progress: &Progress,
 ) -> Result<usize, Cancelled> {
     let Front { graph, cells, width, start } = *front;
     let mut settled = 0;
     let mut base = width.base(start);
+    // Where the bucket after this one starts, not wrapped.
+    let mut end = u64::from(width.next(base));
     // Nothing waits once a whole round of buckets was empty.
     let mut idle = 0;
     for turn in 0_u32.. {
+        while let Some((&(node, cost), rest)) =
+            later.split_first().filter(|(first, _)| u64::from(start) + (first.1 << G::SLOT_BITS) < end)
+        {
+            later = rest;
+            // 0 would mean unreached.
+            let value = (u64::from(start) + (cost << G::SLOT_BITS)) as u32;
+            cells.set(graph.cell(node), if value == 0 { start } else { value });
+            buckets.push_if(true, width.bucket(value), node);
+        }
+        end += u64::from(width.next(0));
         let mut taken = buckets.take(width.bucket(base));
-        idle += 1;
+        idle = if later.is_empty() { idle + 1 } else { 0 };
         while let Some((places, len)) = buckets.next_chunk(&mut taken) {
             idle = 0;
             for &node in buckets.upcoming(&taken) {

@@ -61,7 +61,7 @@ fn check<const N: usize>(size: [u32; 3], seed: u64, alpha: f64, field: bool, hol
     assert_eq!(all.settled(), expected.len());
 
     // Threads that share the front change nothing: the same cells.
-    let shared = plan_on(&lattice, &generators, Goal::Everything, 2, &Progress::default()).unwrap();
+    let shared = plan_on(&lattice, &generators, &[], Goal::Everything, 2, &Progress::default()).unwrap();
     assert_eq!(shared.settled(), all.settled());
     for &node in &nodes {
         assert_eq!(shared.predecessor(node), all.predecessor(node));
