@@ -154,6 +154,12 @@ impl Bounds {
 }
 
 impl ShapeSpec {
+    /// A box.
+    #[must_use]
+    pub fn of_box(bounds: Bounds) -> Self {
+        Self::Inline(Box::new(Solid::Box { min: Point(bounds.min), max: Point(bounds.max) }))
+    }
+
     /// The shape, its names looked up in `named`.
     ///
     /// # Errors

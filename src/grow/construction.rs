@@ -85,6 +85,7 @@ pub(super) fn construction<const N: usize>(
                 shapes.extend(&step.space.forbid);
                 shapes.extend(step.endpoints.iter().filter_map(|set| match &set.placement {
                     super::Placement::Random { inside, .. } => Some(inside),
+                    super::Placement::Near(near) => Some(&near.inside),
                     super::Placement::At(_) => None,
                 }));
                 if let Source::Inside(shape) = &step.source {
@@ -108,6 +109,7 @@ fn cost_contours<const N: usize>(step: &Step, plan: &Plan<'_, Lattice<N>>) -> Ve
     let root = match &step.source {
         Source::At(points) => points[0],
         Source::Inside(shape) => shape.bounds().centre(),
+        Source::Step(..) => step.space.shape.bounds().centre(),
     };
     let up = step.space.up();
     let depth = if up == 1 { 0 } else { window.nearest(root).map_or(window.size[1] / 2, |at| at[1]) };

@@ -4,9 +4,11 @@ use std::collections::{HashMap, HashSet};
 
 use rand::RngExt;
 
+use super::Toward;
 use crate::geom::Shape;
 use crate::graph::{Lattice, Node};
 use crate::math::{DVec3, Stream};
+use crate::skeleton::Skeleton;
 
 /// Random placement gives up after this many rejections in a row.
 const MOST_REJECTIONS: u32 = 20_000;
@@ -38,7 +40,35 @@ pub enum Placement {
         /// Name of the random stream.
         stream: String,
     },
+    /// At random in the vicinity of what a step grew.
+    Near(Near),
 }
+
+/// Endpoints in the vicinity of a step.
+#[derive(Clone, Debug)]
+pub struct Near {
+    /// How many.
+    pub count: u32,
+    /// Index of the step, which grew before.
+    pub step: usize,
+    /// Greatest distance from it where it starts.
+    pub reach: f64,
+    /// What `lower` is a bias towards.
+    pub toward: Toward,
+    /// Bias from 0 to 1: the direction is within `180 (1 - lower)` degrees of that.
+    pub lower: f64,
+    /// How much the reach has shrunk where the step ends, from 0 to 1.
+    pub shorten: f64,
+    /// Where they may be.
+    pub inside: Shape,
+    /// Least distance between any two.
+    pub apart: f64,
+    /// Name of the random stream.
+    pub stream: String,
+}
+
+/// Endpoints near a step are no nearer than this share of the reach: shorter branches would not be seen.
+const LEAST_REACH: f64 = 0.3;
 
 impl Placement {
     /// How many endpoints there will be.
@@ -46,56 +76,129 @@ impl Placement {
     pub fn count(&self) -> usize {
         match self {
             Self::At(points) => points.len(),
-            Self::Random { count, .. } => *count as usize,
+            Self::Random { count, .. } | Self::Near(Near { count, .. }) => *count as usize,
         }
     }
 
-    /// The nodes, in order. A longer random set starts with the shorter one.
+    /// The nodes, in order, and where exactly they are meant where that is told. A longer random set starts with the
+    /// shorter one. `grown` is what the steps before have grown, by index.
     ///
     /// # Errors
     /// A sentence that says which endpoint cannot be placed.
-    pub fn place<const N: usize>(&self, lattice: &Lattice<N>, seed: u64) -> Result<Vec<Node>, String> {
+    pub fn place<const N: usize>(
+        &self,
+        lattice: &Lattice<N>,
+        seed: u64,
+        grown: &[Option<&Skeleton>],
+    ) -> Result<Vec<(Node, Option<DVec3>)>, String> {
         match self {
             Self::At(points) => points
                 .iter()
                 .map(|&p| {
-                    lattice
-                        .nearest(p)
-                        .ok_or_else(|| format!("the endpoint at {p} is outside the space or where nodes are forbidden"))
+                    let node = lattice.nearest_within(p).ok_or_else(|| {
+                        format!("the endpoint at {p} is outside the space or where nodes are forbidden")
+                    })?;
+                    Ok((node, Some(p)))
                 })
                 .collect(),
             Self::Random { count, inside, apart, stream } => {
-                let mut stream = Stream::new(seed, &format!("endpoints/{stream}"));
                 let bounds = inside.bounds();
-                let mut placed = Crowd::new(*apart);
-                let mut taken = HashSet::new();
-                let mut nodes = Vec::new();
-                let mut rejections = 0;
-                while nodes.len() < *count as usize {
+                let draw = |stream: &mut Stream| {
                     let [u, v, w]: [f64; 3] = std::array::from_fn(|_| stream.random());
                     let p = bounds.min + bounds.size() * DVec3::new(u, v, w);
-                    let p = if lattice.is_plane() { p.with_z(0.0) } else { p };
-                    let node = if inside.contains(p) { lattice.nearest(p) } else { None };
-                    let node = node.filter(|node| !taken.contains(node) && placed.has_room(p));
-                    let Some(node) = node else {
-                        rejections += 1;
-                        if rejections == MOST_REJECTIONS {
-                            return Err(format!(
-                                "only {} of {count} endpoints could be placed: make `inside` larger, `apart` ({apart}) smaller, or ask for fewer",
-                                nodes.len(),
-                            ));
-                        }
-                        continue;
-                    };
-                    rejections = 0;
-                    taken.insert(node);
-                    placed.add(p);
-                    nodes.push(node);
-                }
-                Ok(nodes)
+                    if lattice.is_plane() { p.with_z(0.0) } else { p }
+                };
+                reject(lattice, seed, *count, inside, *apart, stream, draw)
+            }
+            Self::Near(near) => {
+                let skeleton = grown[near.step].filter(|s| s.segments().next().is_some());
+                let skeleton = skeleton.ok_or("the step that they are to be near has no limbs")?;
+                let ends: Vec<f64> = skeleton
+                    .segments()
+                    .scan(0.0, |sum, (a, b)| {
+                        *sum += (b.position - a.position).length();
+                        Some(*sum)
+                    })
+                    .collect();
+                let segments: Vec<_> = skeleton.segments().collect();
+                let whole = ends[ends.len() - 1];
+                let way = match (near.toward, skeleton.paths.first()) {
+                    (Toward::Along, Some(path)) => {
+                        skeleton.nodes[path.end as usize].position - skeleton.nodes[0].position
+                    }
+                    _ => DVec3::ZERO,
+                };
+                let down = if lattice.is_plane() { DVec3::NEG_Y } else { DVec3::NEG_Z };
+                let way = way.normalize_or(down);
+                let oldest = skeleton.nodes.iter().map(|n| n.age).fold(f64::MIN_POSITIVE, f64::max);
+                let draw = |stream: &mut Stream| {
+                    let [u, v, w, x, y]: [f64; 5] = std::array::from_fn(|_| stream.random());
+                    let i = ends.partition_point(|&end| end < u * whole).min(segments.len() - 1);
+                    let (from, to) = segments[i];
+                    let start = from.position + (to.position - from.position) * v;
+                    let reach = near.reach * (1.0 - near.shorten * (from.age / oldest));
+                    start
+                        + near.direction(way, w, x, lattice.is_plane())
+                            * reach
+                            * (LEAST_REACH + (1.0 - LEAST_REACH) * y)
+                };
+                reject(lattice, seed, near.count, &near.inside, near.apart, &near.stream, draw)
             }
         }
     }
+}
+
+impl Near {
+    /// A direction of length 1 within `180 (1 - lower)` degrees of `way`, even over them, from two numbers of 0 to 1.
+    fn direction(&self, way: DVec3, u: f64, v: f64, is_plane: bool) -> DVec3 {
+        let half = std::f64::consts::PI * (1.0 - self.lower);
+        if is_plane {
+            let angle = half * (2.0 * u - 1.0);
+            let aside = DVec3::new(-way.y, way.x, 0.0);
+            return way * libm::cos(angle) + aside * libm::sin(angle);
+        }
+        let cos = 1.0 - u * (1.0 - libm::cos(half));
+        let sin = (1.0 - cos * cos).max(0.0).sqrt();
+        let turn = std::f64::consts::TAU * v;
+        let (x, y) = way.any_orthonormal_pair();
+        way * cos + x * (sin * libm::cos(turn)) + y * (sin * libm::sin(turn))
+    }
+}
+
+/// Draws places until there are enough: in the shape, on nodes of their own, apart from each other (2007, section 3).
+fn reject<const N: usize>(
+    lattice: &Lattice<N>,
+    seed: u64,
+    count: u32,
+    inside: &Shape,
+    apart: f64,
+    stream: &str,
+    draw: impl Fn(&mut Stream) -> DVec3,
+) -> Result<Vec<(Node, Option<DVec3>)>, String> {
+    let mut stream = Stream::new(seed, &format!("endpoints/{stream}"));
+    let mut placed = Crowd::new(apart);
+    let mut taken = HashSet::new();
+    let mut nodes = Vec::new();
+    let mut rejections = 0;
+    while nodes.len() < count as usize {
+        let p = draw(&mut stream);
+        let node = if inside.contains(p) { lattice.nearest(p) } else { None };
+        let Some(node) = node.filter(|node| !taken.contains(node) && placed.has_room(p)) else {
+            rejections += 1;
+            if rejections == MOST_REJECTIONS {
+                return Err(format!(
+                    "only {} of {count} endpoints could be placed: make `inside` larger, `apart` ({apart}) smaller, or ask for fewer",
+                    nodes.len(),
+                ));
+            }
+            continue;
+        };
+        rejections = 0;
+        taken.insert(node);
+        placed.add(p);
+        nodes.push((node, None));
+    }
+    Ok(nodes)
 }
 
 /// Points with room around them, in cells as wide as the least distance.

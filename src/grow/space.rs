@@ -81,13 +81,27 @@ impl Space {
     /// # Errors
     /// [`LatticeError`] when no node is open or weights are out of range.
     pub fn lattice<const N: usize>(&self, seed: u64) -> Result<Lattice<N>, LatticeError> {
-        debug_assert_eq!(N as u32, self.neighbours.count());
         let mask = self.is_masked().then(|| self.mask());
         if mask.as_ref().is_some_and(|mask| mask.open() == 0) {
             return Err(LatticeError::Empty);
         }
+        self.lattice_in(self.window, &self.stream, seed, mask)
+    }
+
+    /// A lattice with the weights and fields of this space, but its own window, random stream and mask.
+    ///
+    /// # Errors
+    /// [`LatticeError::Weights`] where weights are out of range.
+    pub(super) fn lattice_in<const N: usize>(
+        &self,
+        window: Window,
+        stream: &str,
+        seed: u64,
+        mask: Option<Mask>,
+    ) -> Result<Lattice<N>, LatticeError> {
+        debug_assert_eq!(N as u32, self.neighbours.count());
         let field = (!self.fields.is_empty()).then(|| (self.varies(), |p| CostField::combine(&self.fields, p)));
-        Lattice::new(self.window, &Stream::new(seed, &format!("space/{}", self.stream)), self.weights, field, mask)
+        Lattice::new(window, &Stream::new(seed, &format!("space/{stream}")), self.weights, field, mask)
     }
 
     fn mask(&self) -> Mask {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Space, Step};
+use super::{DbmSpec, RefineSpec, Space, Step};
 use crate::geom::ShapeSpec;
 use crate::graph::{FieldSpec, Neighbours, Weights};
 use crate::math::{Point, Ref};
@@ -69,10 +69,21 @@ pub struct StepSpec {
     pub from: FromSpec,
     /// Where paths go: sets of endpoints, by name.
     pub to: BTreeMap<String, EndpointSpec>,
-    /// Radii along the paths.
+    /// How limbs come about: by least-cost paths, unless said otherwise.
+    #[serde(default)]
+    pub by: MethodSpec,
+    /// Radii along the paths; limbs that start on another step are nowhere wider than that is there.
     pub width: Width,
-    /// Positions are averaged along limbs over about this many lattice steps to either side; 0 leaves every step of
-    /// the lattice to be seen.
+    /// What it costs to go along the step that this one grows from, over what it costs elsewhere: at 0 branches leave at
+    /// right angles, at 0.7 at about half of one.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 0.95))]
+    pub along: f64,
+    /// Plan again on finer lattices around the paths.
+    #[serde(default)]
+    pub refine: Option<RefineSpec>,
+    /// Positions are averaged along limbs over about this many steps of the (last refined) lattice to either side; 0
+    /// leaves every step of the lattice to be seen.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 20.0))]
     pub smooth: f64,
@@ -89,6 +100,54 @@ pub enum FromSpec {
     At(#[schemars(length(min = 1))] Vec<Point>),
     /// All nodes in a shape.
     Inside(ShapeSpec),
+    /// Everywhere on what this step grew: carried to the nearest nodes, and joined where it is.
+    All(Ref<Step>),
+    /// At the ends of the paths of this step.
+    Ends(Ref<Step>),
+}
+
+/// How limbs come about.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum MethodSpec {
+    /// By least-cost paths (Xu and Mould 2007, section 3).
+    #[default]
+    Paths,
+    /// By the dielectric breakdown model, as a baseline.
+    Dbm(DbmSpec),
+}
+
+/// Endpoints in the vicinity of what a step grew (Xu and Mould 2007, section 4: side branches of lightning).
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NearSpec {
+    /// The step.
+    pub step: Ref<Step>,
+    /// Distance from it, at most (and three tenths of it at least), in scene units.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+    pub reach: f64,
+    /// What `lower` is a bias towards.
+    #[serde(default)]
+    pub toward: Toward,
+    /// Bias of the direction: 0 is any direction, 0.5 the lower half, 1 straight down.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub lower: f64,
+    /// By how much the reach has shrunk where the step ends: 0 not at all, 1 to nothing.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub shorten: f64,
+}
+
+/// Where side branches tend to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Toward {
+    /// Down.
+    #[default]
+    Down,
+    /// The way that the step goes, from its root to the end of its first path.
+    Along,
 }
 
 /// A set of endpoints: exactly one of `count`, `at` and `sketch`. Adding to `count` keeps those already placed.
@@ -102,6 +161,9 @@ pub struct EndpointSpec {
     /// Where to place them at random; by default anywhere in the space.
     #[serde(default)]
     pub inside: Option<ShapeSpec>,
+    /// Place those at random in the vicinity of a step, which has then grown before.
+    #[serde(default)]
+    pub near: Option<NearSpec>,
     /// Least distance between those placed at random, in scene units.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e6))]

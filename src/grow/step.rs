@@ -3,12 +3,12 @@
 use std::collections::HashMap;
 
 use super::construction::{Mark, MarkKind, construction};
-use super::{Endpoints, Space, Unreached};
+use super::{Dbm, Endpoints, Near, Placement, Refine, SIDE, Solver, Space, Unreached};
 use crate::geom::Shape;
 use crate::graph::{Graph, Lattice, LatticeError, Node};
 use crate::math::{Cancelled, DVec3, Progress};
-use crate::plan::{Goal, Plan, PlanError, plan};
-use crate::skeleton::{Skeleton, Width, bend, smooth};
+use crate::plan::{Goal, Plan, PlanError, mean_cost, plan, plan_delayed};
+use crate::skeleton::{Skeleton, SkeletonNode, Width, bend, smooth};
 
 /// A step whose names and files are resolved.
 #[derive(Clone, Debug)]
@@ -25,8 +25,14 @@ pub struct Step {
     pub endpoints: Vec<Endpoints>,
     /// Names of the endpoints' classes.
     pub classes: Vec<String>,
+    /// How limbs come about.
+    pub method: Method,
     /// Radii.
     pub width: Width,
+    /// What it costs to go along the step that this one grows from, over what it costs elsewhere.
+    pub along: f64,
+    /// How paths are planned again.
+    pub refine: Option<Refine>,
     /// Lattice steps to average over.
     pub smooth: f64,
     /// What to do about unreached endpoints.
@@ -40,7 +46,30 @@ pub enum Source {
     At(Vec<DVec3>),
     /// All nodes in a shape.
     Inside(Shape),
+    /// What the step with this index has grown.
+    Step(usize, Part),
 }
+
+/// Which part of a step others grow from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// All of it.
+    All,
+    /// The ends of its paths.
+    Ends,
+}
+
+/// How limbs come about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Method {
+    /// By least-cost paths.
+    Paths,
+    /// By the dielectric breakdown model.
+    Dbm(Dbm),
+}
+
+/// An endpoint on its way: its node, where exactly it is meant, and its set.
+type Wanted<'a> = (Node, Option<DVec3>, &'a Endpoints);
 
 /// What a step yields.
 #[derive(Clone, Debug)]
@@ -91,92 +120,206 @@ impl Step {
         self.space.bytes_needed().saturating_add(skeleton)
     }
 
-    /// Grows the step in the scene with this seed; `show` lists what construction drawings need.
+    /// The steps that must have grown before, by index.
+    pub fn after(&self) -> impl Iterator<Item = usize> + '_ {
+        let from = match self.source {
+            Source::Step(step, _) => Some(step),
+            Source::At(_) | Source::Inside(_) => None,
+        };
+        let near = |set: &Endpoints| match &set.placement {
+            Placement::Near(Near { step, .. }) => Some(*step),
+            Placement::At(_) | Placement::Random { .. } => None,
+        };
+        from.into_iter().chain(self.endpoints.iter().filter_map(near))
+    }
+
+    /// Grows the step in the scene with this seed. `grown` has what the steps before it have grown, by index; `show`
+    /// lists what construction drawings need.
     ///
     /// # Errors
     /// [`GrowError::Scene`] where endpoints cannot be placed or reached, the lattice is empty, or weights are out of
     /// range; [`GrowError::Cancelled`].
-    pub fn grow(&self, seed: u64, show: &[MarkKind], progress: &Progress) -> Result<Grown, GrowError> {
+    pub fn grow(
+        &self,
+        seed: u64,
+        grown: &[Option<&Skeleton>],
+        show: &[MarkKind],
+        progress: &Progress,
+    ) -> Result<Grown, GrowError> {
         match self.space.neighbours.count() {
-            4 => self.grow_in::<4>(seed, show, progress),
-            8 => self.grow_in::<8>(seed, show, progress),
-            6 => self.grow_in::<6>(seed, show, progress),
-            18 => self.grow_in::<18>(seed, show, progress),
-            _ => self.grow_in::<26>(seed, show, progress),
+            4 => self.grow_in::<4>(seed, grown, show, progress),
+            8 => self.grow_in::<8>(seed, grown, show, progress),
+            6 => self.grow_in::<6>(seed, grown, show, progress),
+            18 => self.grow_in::<18>(seed, grown, show, progress),
+            _ => self.grow_in::<26>(seed, grown, show, progress),
         }
     }
 
-    fn grow_in<const N: usize>(&self, seed: u64, show: &[MarkKind], progress: &Progress) -> Result<Grown, GrowError> {
+    fn grow_in<const N: usize>(
+        &self,
+        seed: u64,
+        grown: &[Option<&Skeleton>],
+        show: &[MarkKind],
+        progress: &Progress,
+    ) -> Result<Grown, GrowError> {
         let in_space =
             |key: &str, message: String| GrowError::Scene { place: format!("space.{}{key}", self.space_name), message };
         let lattice: Lattice<N> = self.space.lattice(seed).map_err(|error| {
             let key = if matches!(error, LatticeError::Weights(_)) { ".weights" } else { ".nodes" };
             in_space(key, error.to_string())
         })?;
-        let generators = self.generators(&lattice)?;
-        let mut wanted = Vec::new();
+        let starts = self.starts(&lattice, grown)?;
+        let mut wanted: Vec<Wanted<'_>> = Vec::new();
         for set in &self.endpoints {
-            let nodes = set.placement.place(&lattice, seed).map_err(|message| GrowError::Scene {
+            let nodes = set.placement.place(&lattice, seed, grown).map_err(|message| GrowError::Scene {
                 place: format!("grow.{}.to.{}", self.name, set.name),
                 message,
             })?;
-            wanted.extend(nodes.into_iter().map(|node| (node, set)));
+            wanted.extend(nodes.into_iter().map(|(node, at)| (node, at, set)));
         }
-        let nodes: Vec<Node> = wanted.iter().map(|&(node, _)| node).collect();
-        let goal = if show.contains(&MarkKind::Contours) { Goal::Everything } else { Goal::Nodes(&nodes) };
-        let plan = plan(&lattice, &generators, goal, progress).map_err(|error| match error {
-            PlanError::Cancelled(cancelled) => GrowError::Cancelled(cancelled),
-            PlanError::TooWide { .. } => in_space(".weights", error.to_string()),
-        })?;
-
-        let (skeleton, dropped) = self.skeleton(&plan, &wanted)?;
+        let nodes: Vec<Node> = wanted.iter().map(|&(node, ..)| node).collect();
+        let generators: Vec<Node> = starts.iter().map(|&(node, _)| node).collect();
+        let (skeleton, dropped, settled, marks) = match self.method {
+            Method::Paths => {
+                let goal = if show.contains(&MarkKind::Contours) { Goal::Everything } else { Goal::Nodes(&nodes) };
+                let later = self.delays(&lattice, &starts, grown);
+                let plan = if later.is_empty() {
+                    plan(&lattice, &generators, goal, progress)
+                } else {
+                    plan_delayed(&lattice, &[], &later, goal, progress)
+                };
+                let plan = plan.map_err(|error| match error {
+                    PlanError::Cancelled(cancelled) => GrowError::Cancelled(cancelled),
+                    PlanError::TooWide { .. } => in_space(".weights", error.to_string()),
+                })?;
+                let (skeleton, dropped) = self.paths(&plan, &starts, &wanted)?;
+                let marks = construction(self, &plan, &nodes, show).map_err(|message| in_space(".nodes", message))?;
+                (skeleton, dropped, plan.settled() as u64, marks)
+            }
+            Method::Dbm(dbm) => {
+                let ends: Vec<(Node, u16)> = wanted.iter().map(|&(node, _, set)| (node, set.class)).collect();
+                let random = crate::math::Stream::new(seed, &format!("dbm/{}", self.name));
+                let (skeleton, settled) =
+                    dbm.grow(&lattice, &generators, &ends, self.classes.clone(), random, progress)?;
+                let has_end = skeleton.paths.first().is_some_and(|path| self.classes[path.class as usize] != SIDE);
+                if !has_end && dbm.solver == Solver::Grid && self.unreached == Unreached::Error {
+                    let message = format!(
+                        "growth touches no endpoint within {} nodes: allow more, or set `unreached = \"drop\"`",
+                        dbm.nodes
+                    );
+                    return Err(GrowError::Scene { place: format!("grow.{}.by", self.name), message });
+                }
+                (skeleton, 0, settled, Vec::new())
+            }
+        };
+        let skeleton = match &self.refine {
+            Some(refine) => refine.apply::<N>(skeleton, &self.space, seed, progress).map_err(|error| match error {
+                GrowError::Scene { message, .. } => in_space(".weights", message),
+                cancelled @ GrowError::Cancelled(_) => cancelled,
+            })?,
+            None => skeleton,
+        };
         Ok(Grown {
             name: self.name.clone(),
             nodes: lattice.open_nodes(),
             edges: lattice.count_edges(),
-            settled: plan.settled() as u64,
-            marks: construction(self, &plan, &nodes, show).map_err(|message| in_space(".nodes", message))?,
-            skeleton,
+            settled,
+            marks,
+            skeleton: self.finish(skeleton, grown)?,
             dropped,
         })
     }
 
-    fn generators<const N: usize>(&self, lattice: &Lattice<N>) -> Result<Vec<Node>, GrowError> {
-        let place = || format!("grow.{}.from", self.name);
-        match &self.source {
+    /// The generators, and where exactly each is meant where that is told. No node is named twice.
+    fn starts<const N: usize>(
+        &self,
+        lattice: &Lattice<N>,
+        grown: &[Option<&Skeleton>],
+    ) -> Result<Vec<(Node, Option<DVec3>)>, GrowError> {
+        let wrong =
+            |message: &str| GrowError::Scene { place: format!("grow.{}.from", self.name), message: message.to_owned() };
+        let starts: Vec<(Node, Option<DVec3>)> = match &self.source {
             Source::At(points) => points
                 .iter()
                 .map(|&p| {
-                    lattice.nearest(p).ok_or_else(|| GrowError::Scene {
-                        place: place(),
-                        message: format!("the generator at {p} is outside the space or where nodes are forbidden"),
-                    })
+                    let node = lattice.nearest_within(p).ok_or_else(|| {
+                        wrong(&format!("the generator at {p} is outside the space or where nodes are forbidden"))
+                    })?;
+                    Ok((node, Some(p)))
                 })
-                .collect(),
+                .collect::<Result<_, GrowError>>()?,
             Source::Inside(shape) => {
-                let nodes: Vec<_> = lattice.nodes().filter(|&n| shape.contains(lattice.position(n))).collect();
-                if nodes.is_empty() {
-                    return Err(GrowError::Scene {
-                        place: place(),
-                        message: "no node of the space lies in this shape".to_owned(),
-                    });
-                }
-                Ok(nodes)
+                lattice.nodes().filter(|&n| shape.contains(lattice.position(n))).map(|n| (n, None)).collect()
+            }
+            Source::Step(step, part) => {
+                let skeleton = grown[*step].ok_or_else(|| wrong("the step has not grown"))?;
+                let places: Vec<DVec3> = match part {
+                    Part::All => skeleton.nodes.iter().map(|n| n.position).collect(),
+                    Part::Ends => skeleton.paths.iter().map(|p| skeleton.nodes[p.end as usize].position).collect(),
+                };
+                places.into_iter().filter_map(|p| lattice.nearest(p).map(|node| (node, Some(p)))).collect()
+            }
+        };
+        if starts.is_empty() {
+            return Err(wrong(match self.source {
+                Source::Step(..) => "nothing of that step lies in the space",
+                Source::At(_) | Source::Inside(_) => "no node of the space lies in this shape",
+            }));
+        }
+        // Of several places about a node the nearest, then the first.
+        let far = |&(node, p): &(Node, Option<DVec3>)| p.map_or(0.0, |p| (p - lattice.position(node)).length_squared());
+        let mut best: HashMap<Node, usize> = HashMap::new();
+        for (i, start) in starts.iter().enumerate() {
+            let kept = best.entry(start.0).or_insert(i);
+            if far(start) < far(&starts[*kept]) {
+                *kept = i;
             }
         }
+        Ok(starts.iter().enumerate().filter(|(i, start)| best[&start.0] == *i).map(|(_, start)| *start).collect())
     }
 
-    fn skeleton<const N: usize>(
+    /// With what cost each generator starts, where going along the step before costs something.
+    fn delays<const N: usize>(
+        &self,
+        lattice: &Lattice<N>,
+        starts: &[(Node, Option<DVec3>)],
+        grown: &[Option<&Skeleton>],
+    ) -> Vec<(Node, u64)> {
+        let Source::Step(step, _) = self.source else { return Vec::new() };
+        let Some(skeleton) = grown[step].filter(|_| self.along > 0.0) else { return Vec::new() };
+        let mut along: HashMap<[u64; 3], f64> = HashMap::new();
+        let mut lengths: Vec<f64> = Vec::with_capacity(skeleton.nodes.len());
+        for node in &skeleton.nodes {
+            lengths.push(node.parent.map_or(0.0, |parent| {
+                lengths[parent as usize] + (node.position - skeleton.nodes[parent as usize].position).length()
+            }));
+            along.entry(bits(node.position)).or_insert(lengths[lengths.len() - 1]);
+        }
+        // Weights that a lattice was made of are in range.
+        let mean = mean_cost::<N>(self.space.weights).unwrap_or(0.0);
+        let scale = self.along * mean / self.space.window.spacing * f64::from(1_u32 << lattice.weight_range().fraction);
+        let delay = |p: DVec3| (along.get(&bits(p)).copied().unwrap_or(0.0) * scale) as u64;
+        starts.iter().map(|&(node, at)| (node, at.map_or(0, delay))).collect()
+    }
+
+    fn paths<const N: usize>(
         &self,
         plan: &Plan<'_, Lattice<N>>,
-        wanted: &[(Node, &Endpoints)],
+        starts: &[(Node, Option<DVec3>)],
+        wanted: &[Wanted<'_>],
     ) -> Result<(Skeleton, usize), GrowError> {
         let lattice = plan.graph();
         let range = lattice.weight_range();
         let mut skeleton = Skeleton::new(self.classes.clone());
         let mut known = HashMap::new();
         let mut dropped = 0;
-        for &(end, set) in wanted {
+        // What was told exactly is there exactly; the rest is on nodes.
+        let exact: HashMap<Node, DVec3> = wanted
+            .iter()
+            .filter_map(|&(node, at, _)| Some((node, at?)))
+            .chain(starts.iter().filter_map(|&(node, at)| Some((node, at?))))
+            .collect();
+        for &(end, _, set) in wanted {
             let Some(cost) = plan.cost(end) else {
                 if self.unreached == Unreached::Error {
                     return Err(GrowError::Scene {
@@ -192,12 +335,18 @@ impl Step {
             };
             let mut left = cost;
             let path = plan.path(end).map(|node| {
-                let here = (node, lattice.position(node), range.real(left));
+                let here =
+                    (node, exact.get(&node).copied().unwrap_or_else(|| lattice.position(node)), range.real(left));
                 left -= plan.predecessor(node).map_or(0, |(_, weight)| u64::from(weight));
                 here
             });
             skeleton.add_path(&mut known, set.class, path);
         }
+        Ok((skeleton, dropped))
+    }
+
+    /// Radii, smoothing, ages and branches.
+    fn finish(&self, mut skeleton: Skeleton, grown: &[Option<&Skeleton>]) -> Result<Skeleton, GrowError> {
         self.width
             .apply(&mut skeleton)
             .map_err(|message| GrowError::Scene { place: format!("grow.{}.width", self.name), message })?;
@@ -205,7 +354,21 @@ impl Step {
             smooth(&mut skeleton, self.smooth);
             skeleton = bend(&skeleton);
         }
+        let earlier = match self.source {
+            Source::Step(step, _) => grown[step],
+            Source::At(_) | Source::Inside(_) => None,
+        };
+        let known: HashMap<[u64; 3], &SkeletonNode> =
+            earlier.into_iter().flat_map(|s| &s.nodes).map(|node| (bits(node.position), node)).collect();
+        skeleton.start_from(|root| {
+            known.get(&bits(root.position)).map_or((0.0, f64::INFINITY), |node| (node.age, node.radius))
+        });
         skeleton.number_branches();
-        Ok((skeleton, dropped))
+        Ok(skeleton)
     }
+}
+
+/// What tells a place from any other.
+fn bits(p: DVec3) -> [u64; 3] {
+    p.to_array().map(f64::to_bits)
 }

@@ -1,8 +1,8 @@
 //! Paths become a forest.
 
 use std::collections::HashMap;
+use std::hash::Hash;
 
-use crate::graph::Node;
 use crate::math::DVec3;
 
 /// One node of a skeleton.
@@ -14,6 +14,9 @@ pub struct SkeletonNode {
     pub parent: Option<u32>,
     /// Least path cost from the generator.
     pub cost: f64,
+    /// Cost of the whole way from where growth began, through the steps that this one grew from: the order in which
+    /// nodes grow.
+    pub age: f64,
     /// Radius of the limb here; 0 until a width is given.
     pub radius: f64,
     /// The limb that it belongs to ([`Skeleton::number_branches`]).
@@ -53,11 +56,11 @@ impl Skeleton {
 
     /// Adds the path given from its endpoint back to a generator: each node, its position and its cost. Paths that
     /// meet share their nodes; `known` remembers which are there.
-    pub fn add_path(
+    pub fn add_path<K: Copy + Eq + Hash>(
         &mut self,
-        known: &mut HashMap<Node, u32>,
+        known: &mut HashMap<K, u32>,
         class: u16,
-        path: impl Iterator<Item = (Node, DVec3, f64)>,
+        path: impl Iterator<Item = (K, DVec3, f64)>,
     ) {
         let mut fresh = Vec::new();
         let mut parent = None;
@@ -71,10 +74,63 @@ impl Skeleton {
         for (node, position, cost) in fresh.into_iter().rev() {
             let at = self.nodes.len() as u32;
             known.insert(node, at);
-            self.nodes.push(SkeletonNode { position, parent, cost, radius: 0.0, branch: 0, level: 0, class });
+            self.nodes.push(SkeletonNode {
+                position,
+                parent,
+                cost,
+                age: cost,
+                radius: 0.0,
+                branch: 0,
+                level: 0,
+                class,
+            });
             parent = Some(at);
         }
         self.paths.extend(parent.map(|end| Path { end, class }));
+    }
+
+    /// Gives every tree of the forest an age and a largest radius, told by `start` from its root.
+    pub fn start_from(&mut self, start: impl Fn(&SkeletonNode) -> (f64, f64)) {
+        let mut starts: Vec<(f64, f64)> = Vec::with_capacity(self.nodes.len());
+        for node in &mut self.nodes {
+            let (age, radius) = node.parent.map_or_else(|| start(node), |parent| starts[parent as usize]);
+            starts.push((age, radius));
+            node.age = age + node.cost;
+            node.radius = node.radius.min(radius);
+        }
+    }
+
+    /// What had grown at this age: younger nodes are left out, and the last segment of each limb is as long as it was.
+    #[must_use]
+    pub fn until(&self, age: f64) -> Self {
+        let mut grown = Self { classes: self.classes.clone(), ..Self::default() };
+        let mut renamed: Vec<Option<u32>> = vec![None; self.nodes.len()];
+        for (i, node) in self.nodes.iter().enumerate() {
+            let parent = match node.parent {
+                Some(p) => renamed[p as usize].filter(|_| self.nodes[p as usize].age < age),
+                None if node.age <= age => None,
+                None => continue,
+            };
+            if node.parent.is_some() && parent.is_none() {
+                continue;
+            }
+            let mut node = SkeletonNode { parent, ..*node };
+            if let Some(from) = parent.map(|p| grown.nodes[p as usize]).filter(|_| node.age > age) {
+                let share = (age - from.age) / (node.age - from.age);
+                node.position = from.position + (node.position - from.position) * share;
+                node.cost = from.cost + (node.cost - from.cost) * share;
+                node.radius = from.radius + (node.radius - from.radius) * share;
+                node.age = age;
+            }
+            renamed[i] = Some(grown.nodes.len() as u32);
+            grown.nodes.push(node);
+        }
+        grown.paths = self
+            .paths
+            .iter()
+            .filter_map(|path| renamed[path.end as usize].map(|end| Path { end, class: path.class }))
+            .collect();
+        grown
     }
 
     /// The nodes with their parents, roots left out.
@@ -137,6 +193,7 @@ impl Skeleton {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::graph::Node;
 
     /// A skeleton from lists of (x, y) that start at their endpoint; equal points are one node.
     pub fn skeleton(paths: &[&[(i32, i32)]]) -> Skeleton {

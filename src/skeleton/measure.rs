@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::Skeleton;
+use super::{Skeleton, dimension};
 use crate::math::DVec3;
 
 /// Numbers that describe a skeleton's form.
@@ -26,6 +26,16 @@ pub struct Measurement {
     pub spread: f64,
     /// Length of the limb that starts at the root up to its first fork, as a share of the greatest height.
     pub trunk: f64,
+    /// How far the lowest end of a path lies below the root, in scene units.
+    pub depth: f64,
+    /// Share of the paths that end lower than they start.
+    pub falling: f64,
+    /// The greatest radius, in scene units.
+    pub radius: f64,
+    /// The greatest radius over the mean radius of the ends of paths.
+    pub taper: f64,
+    /// Box-counting dimension.
+    pub dimension: f64,
 }
 
 /// Measures `skeleton`; the last axis that it extends along is up.
@@ -56,7 +66,8 @@ pub fn measure(skeleton: &Skeleton) -> Measurement {
     }
     let most =
         |f: &dyn Fn(DVec3) -> f64| skeleton.nodes.iter().map(|n| f(n.position)).fold(f64::MIN_POSITIVE, f64::max);
-    let top = most(&height);
+    // Of what grows downwards too.
+    let top = most(&|p| height(p).abs());
     let ratios: Vec<f64> = skeleton
         .paths
         .iter()
@@ -69,6 +80,10 @@ pub fn measure(skeleton: &Skeleton) -> Measurement {
         .collect();
     let children = skeleton.child_counts();
     let forks: Vec<usize> = (0..children.len()).filter(|&i| children[i] > 1).collect();
+    let ends = || skeleton.paths.iter().map(|path| path.end as usize);
+    let tips: f64 = ends().map(|i| skeleton.nodes[i].radius).sum();
+    let radius = skeleton.nodes.iter().map(|n| n.radius).fold(0.0, f64::max);
+    let falls = |&i: &usize| height(skeleton.nodes[i].position) < height(skeleton.nodes[start[i] as usize].position);
     let mean = |sum: f64, count: usize| if count == 0 { 0.0 } else { sum / count as f64 };
     let share = |sum: f64| if length > 0.0 { sum / length } else { 0.0 };
     Measurement {
@@ -80,6 +95,11 @@ pub fn measure(skeleton: &Skeleton) -> Measurement {
         height: share(heights) / top,
         fork_height: mean(forks.iter().map(|&i| height(skeleton.nodes[i].position)).sum(), forks.len()) / top,
         spread: most(&offset) / top,
+        depth: -ends().map(|i| height(skeleton.nodes[i].position)).fold(0.0, f64::min),
+        falling: mean(ends().filter(falls).count() as f64, skeleton.paths.len()),
+        radius,
+        taper: if tips > 0.0 { radius / mean(tips, skeleton.paths.len()) } else { 0.0 },
+        dimension: dimension(&[skeleton]),
         trunk: forks.first().map_or(length, |&i| along[i]) / top,
     }
 }

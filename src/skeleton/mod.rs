@@ -4,13 +4,17 @@
 //! radii are finite and above 0 once a width has been given.
 
 mod build;
+mod dimension;
 mod measure;
+mod relate;
 mod smooth;
 mod spline;
 mod width;
 
 pub use build::{Path, Skeleton, SkeletonNode};
+pub use dimension::dimension;
 pub use measure::{Measurement, measure};
+pub use relate::{apart, crossings, floating, shared_ends};
 pub use smooth::smooth;
 pub use spline::{bend, overlap};
 pub use width::{PerClass, Taper, Width};
