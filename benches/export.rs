@@ -31,6 +31,7 @@ fn million() -> Model {
         segments,
         mesh: Mesh::default(),
         digits,
+        shadow: true,
     };
     let grey = Colour([0.5; 3]);
     Model {
@@ -43,6 +44,7 @@ fn million() -> Model {
         ground: None,
         sky: Sky::plain(grey),
         marks: Vec::new(),
+        strokes: Vec::new(),
     }
 }
 

@@ -41,6 +41,7 @@ fn model(count: usize) -> Model {
             segments: (0..count as u32).map(|i| [2 * i, 2 * i + 1]).collect(),
             mesh: Mesh::default(),
             digits,
+            shadow: true,
         }],
         materials: vec![("bark".to_owned(), Material::matt(Colour([0.5, 0.4, 0.3])))],
         camera: Camera {
@@ -58,6 +59,7 @@ fn model(count: usize) -> Model {
         ground: None,
         sky: Sky::plain(Colour([0.7, 0.8, 0.9])),
         marks: Vec::new(),
+        strokes: Vec::new(),
     }
 }
 

@@ -30,16 +30,25 @@ light_source {
 {% if light.parallel %}
   parallel point_at <0, 0, 0>
 {% endif %}
+{% if light.fade %}
+  fade_distance {{ light.fade }} fade_power 2
+{% endif %}
 {% if not light.shadow %}
   shadowless
 {% endif %}
 }
-{% if light.shadow %}
+{% if light.shadow or light.fade %}
 #else
 light_source {
   {{ light.location }}, rgb {{ light.studio }}
 {% if light.parallel %}
   parallel point_at <0, 0, 0>
+{% endif %}
+{% if light.fade %}
+  fade_distance {{ light.fade }} fade_power 2
+{% endif %}
+{% if not light.shadow %}
+  shadowless
 {% endif %}
 {% if light.across %}
   area_light x*{{ light.across }}, z*{{ light.across }}, 5, 5 adaptive 1 circular orient

@@ -28,6 +28,7 @@ fn model(balls: Vec<Ball>, segments: Vec<[u32; 2]>) -> Model {
             segments,
             mesh: Mesh::default(),
             digits: Digits(5),
+            shadow: true,
         }],
         materials: vec![("white".to_owned(), Material::matt(Colour([1.0; 3])))],
         camera: Camera {
@@ -45,6 +46,7 @@ fn model(balls: Vec<Ball>, segments: Vec<[u32; 2]>) -> Model {
         ground: None,
         sky: Sky::plain(Colour([0.0; 3])),
         marks: Vec::new(),
+        strokes: Vec::new(),
     }
 }
 

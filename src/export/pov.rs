@@ -68,6 +68,7 @@ struct ObjectValues {
     /// What follows the object where it stands, after the first, which is at its foot.
     places: Vec<String>,
     keyword: &'static str,
+    shadow: bool,
     texture: String,
     body: String,
 }
@@ -112,6 +113,8 @@ struct LightValues {
     studio: String,
     parallel: bool,
     across: Option<String>,
+    /// Distance over which it falls off.
+    fade: Option<String>,
     shadow: bool,
 }
 
@@ -168,6 +171,7 @@ impl<'a> Pov<'a> {
             places: object.instances[1..].iter().map(|place| placed(place, object.digits)).collect(),
             // A union of fewer than two objects warns.
             keyword: if object.balls.len() + object.segments.len() < 2 { "object" } else { "union" },
+            shadow: object.shadow,
             texture: match model.materials[object.material].1.pattern {
                 Some(_) => format!("{}_Plain", material_id(object.material)),
                 None => material_id(object.material),
@@ -312,13 +316,19 @@ fn light_values(light: &Light, extent: f64, point: &dyn Fn(DVec3) -> String) -> 
                 studio: colour(light.studio()),
                 parallel: true,
                 across: (size > 0.0 && shadow).then(|| number(wide, PLAIN)),
+                fade: None,
                 shadow,
             }
         }
-        Light::Point { at, colour: c, shadow } => {
-            let studio = colour(light.studio());
-            LightValues { location: point(at), colour: colour(c), studio, parallel: false, across: None, shadow }
-        }
+        Light::Point { at, colour: c, shadow, fade } => LightValues {
+            location: point(at),
+            colour: colour(c),
+            studio: colour(light.studio()),
+            parallel: false,
+            across: None,
+            fade: fade.map(|fade| number(fade, PLAIN)),
+            shadow,
+        },
     }
 }
 

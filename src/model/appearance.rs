@@ -119,7 +119,7 @@ pub enum LightSpec {
         #[serde(default = "yes")]
         shadow: bool,
     },
-    /// Light from a point, without falloff.
+    /// Light from a point.
     Point {
         /// Where it is.
         at: Point,
@@ -128,6 +128,11 @@ pub enum LightSpec {
         /// Does it cast shadows?
         #[serde(default = "yes")]
         shadow: bool,
+        /// Distance over which it falls off: at distance d there is `2 / (1 + (d / fade)^2)` of it. Without it, it does
+        /// not.
+        #[serde(default)]
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+        fade: Option<f64>,
     },
 }
 
@@ -157,6 +162,8 @@ pub enum Light {
         colour: Colour,
         /// Does it cast shadows?
         shadow: bool,
+        /// Distance over which it falls off, if it does.
+        fade: Option<f64>,
     },
 }
 
@@ -164,12 +171,31 @@ impl Light {
     /// A sun in the studio look is this much stronger than in the exact one, where constant light adds to it.
     const SUN: f64 = 1.6;
 
-    /// Its colour in the studio look: lights without shadow are left out, since the sky takes their place.
+    /// Its colour in the studio look: lights without shadow are left out, since the sky takes their place, but for those
+    /// that fall off.
     #[must_use]
     pub fn studio(&self) -> Colour {
-        let (Self::Sun { colour: Colour(colour), shadow, .. } | Self::Point { colour: Colour(colour), shadow, .. }) =
-            *self;
-        Colour(colour.map(|x| if shadow { x * Self::SUN } else { 0.0 }))
+        let (Colour(colour), stays) = match *self {
+            Self::Sun { colour, shadow, .. } => (colour, shadow),
+            Self::Point { colour, shadow, fade, .. } => (colour, shadow || fade.is_some()),
+        };
+        Colour(colour.map(|x| if stays { x * Self::SUN } else { 0.0 }))
+    }
+
+    /// Its colour in the exact look.
+    #[must_use]
+    pub fn colour(&self) -> Colour {
+        let (Self::Sun { colour, .. } | Self::Point { colour, .. }) = *self;
+        colour
+    }
+
+    /// The share of its light that is left at this distance, as POV-Ray has it with `fade_power 2`.
+    #[must_use]
+    pub fn falloff(&self, distance: f64) -> f64 {
+        match *self {
+            Self::Point { fade: Some(fade), .. } => 2.0 / (1.0 + (distance / fade) * (distance / fade)),
+            Self::Sun { .. } | Self::Point { .. } => 1.0,
+        }
     }
 }
 

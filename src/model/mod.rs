@@ -9,6 +9,8 @@ mod dome;
 mod object;
 mod pattern;
 mod skin;
+mod stroke;
+mod view;
 
 pub use appearance::{FADE, Ground, GroundSpec, Light, LightSpec, Material, Sky, SkySpec};
 pub use camera::{Camera, CameraSpec, Projected, Projection};
@@ -16,6 +18,8 @@ pub use dome::Dome;
 pub use object::{Ball, Digits, Instance, Mesh, Object};
 pub use pattern::{BARK, Frame, MOSS, Pattern, Wave, limb_frames};
 pub use skin::{Skin, SkinError};
+pub use stroke::{CORE, CloudLight, GlowSpec, Halo, NearGlow, Piece, Stroke, shining};
+pub use view::{BEYOND, Frame as ViewFrame, ViewSpec};
 
 use crate::geom::Bounds;
 use crate::grow::Mark;
@@ -42,6 +46,8 @@ pub struct Model {
     pub sky: Sky,
     /// Construction drawings, in world space.
     pub marks: Vec<Mark>,
+    /// What shines in a flat scene with a view, in scene space.
+    pub strokes: Vec<Stroke>,
 }
 
 impl Model {

@@ -94,6 +94,8 @@ pub struct Object {
     pub mesh: Mesh,
     /// Digits behind the point of all its numbers.
     pub digits: Digits,
+    /// Does it cast shadows?
+    pub shadow: bool,
 }
 
 impl Object {

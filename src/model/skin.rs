@@ -70,6 +70,7 @@ impl Object {
             segments: Vec::new(),
             mesh,
             digits,
+            shadow: true,
         })
     }
 }
@@ -118,6 +119,7 @@ impl Skin {
             segments: Vec::new(),
             mesh: Mesh::default(),
             digits,
+            shadow: true,
         };
         let mut branches = 0;
         for skeleton in skeletons {

@@ -17,7 +17,7 @@ impl World<'_> {
         let own = material.ambient + material.emission;
         let mut colour = pigment.map(|c| c * own);
         for light in &self.model.lights {
-            let (towards, far, Colour(strength), shadow) = towards(light, surface.point);
+            let (towards, far, shadow) = towards(light, surface.point);
             if towards.dot(surface.normal) <= 0.0 {
                 continue;
             }
@@ -25,6 +25,8 @@ impl World<'_> {
             if shadow && (surface.is_inside || self.is_blocked(&to_light)) {
                 continue;
             }
+            let Colour(strength) = light.colour();
+            let strength = strength.map(|x| x * light.falloff(far));
             add(&mut colour, &lit(material, pigment, shadow.then_some(ray), surface.normal, towards), &strength);
         }
         colour
@@ -48,7 +50,7 @@ impl World<'_> {
             if strength == [0.0; 3] {
                 continue;
             }
-            let (mut towards, far, ..) = towards(light, surface.point);
+            let (mut towards, far, shadow) = towards(light, surface.point);
             if let Light::Sun { size, .. } = light
                 && *size > 0.0
             {
@@ -57,8 +59,9 @@ impl World<'_> {
             if towards.dot(surface.normal) <= 0.0 || surface.is_inside {
                 continue;
             }
-            if !self.is_blocked(&Ray { far, ..Ray::new(origin, towards) }) {
-                add(&mut colour, &lit(material, pigment, Some(ray), surface.normal, towards), &strength);
+            if !shadow || !self.is_blocked(&Ray { far, ..Ray::new(origin, towards) }) {
+                let strength = strength.map(|x| x * light.falloff(far));
+                add(&mut colour, &lit(material, pigment, shadow.then_some(ray), surface.normal, towards), &strength);
             }
         }
         colour
@@ -75,14 +78,14 @@ impl World<'_> {
     }
 }
 
-/// Direction to a light, its distance, its colour, and whether it casts shadows.
-fn towards(light: &Light, point: DVec3) -> (DVec3, f64, Colour, bool) {
+/// Direction to a light, its distance, and whether it casts shadows.
+fn towards(light: &Light, point: DVec3) -> (DVec3, f64, bool) {
     match *light {
-        Light::Sun { towards, colour, shadow, .. } => (towards, f64::INFINITY, colour, shadow),
-        Light::Point { at, colour, shadow } => {
+        Light::Sun { towards, shadow, .. } => (towards, f64::INFINITY, shadow),
+        Light::Point { at, shadow, .. } => {
             let way = at - point;
             let distance = way.length();
-            (way / distance.max(f64::MIN_POSITIVE), distance, colour, shadow)
+            (way / distance.max(f64::MIN_POSITIVE), distance, shadow)
         }
     }
 }

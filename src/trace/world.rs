@@ -212,6 +212,9 @@ impl<'a> World<'a> {
         let mut met = false;
         self.meet(ray, &mut |instance, far| {
             let (object, place) = &self.instances[instance as usize];
+            if !self.model.objects[*object as usize].shadow {
+                return far;
+            }
             let shape = &self.shapes[*object as usize];
             let own = to_object(ray, place);
             met = shape.cones.is_blocked(&own) || (!shape.triangles.is_empty() && shape.triangles.is_blocked(&own));
