@@ -184,7 +184,7 @@ mod tests {
     fn picture(values: &[(&str, [f32; 4])]) -> Layers {
         let channel =
             |(name, v): &(&str, [f32; 4])| Channel { name: (*name).to_owned(), values: v.to_vec(), is_half: false };
-        Layers { width: 2, height: 2, channels: values.iter().map(channel).collect(), texts: vec![] }
+        Layers { width: 2, height: 2, channels: values.iter().map(channel).collect(), ..Layers::default() }
     }
 
     #[test]

@@ -2,14 +2,18 @@
 
 use std::io::{self, Cursor, Seek, Write};
 
-use exr::meta::attribute::AttributeValue;
+use exr::block::BlockIndex;
+use exr::image::write::channels::{ChannelsWriter, WritableChannels};
+use exr::math::RoundingMode;
+use exr::meta::attribute::{AttributeValue, ChannelDescription, ChannelList, Chromaticities, LevelMode, SampleType};
+use exr::meta::header::Header;
 use exr::prelude::{
-    AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes, LineOrder,
-    ReadChannels, ReadLayers, Text, WritableImage, f16, read,
+    Blocks, Compression, Encoding, FlatSamples, Image, IntegerBounds, Layer, LayerAttributes, LineOrder, ReadChannels,
+    ReadLayers, Text, Vec2, WritableImage, f16, read,
 };
 
 use super::picture::{MOST_BYTES, MOST_SIDE};
-use crate::raster::{Channel, Layers, Panorama};
+use crate::raster::{Channel, Layers, Panorama, Window};
 
 /// Refuses what would not fit, before anything is allocated.
 fn check_size(width: usize, height: usize, channels: usize) -> Result<(), String> {
@@ -65,7 +69,22 @@ pub fn decode_exr(bytes: &[u8]) -> Result<Layers, String> {
             texts.push((name, text.to_string()));
         }
     }
-    Ok(Layers { width: layer.size.width() as u32, height: layer.size.height() as u32, channels, texts })
+    let size = [layer.size.width() as u32, layer.size.height() as u32];
+    let (at, display) = (layer.attributes.layer_position, image.attributes.display_window);
+    let mut window = Window {
+        at: [at.x(), at.y()],
+        origin: [display.position.x(), display.position.y()],
+        display: [display.size.width() as u32, display.size.height() as u32],
+    };
+    if (window.at, window.display) == (window.origin, size) && window.at == [0, 0] {
+        window = Window::default();
+    }
+    let xy = |c: Chromaticities| [c.red, c.green, c.blue, c.white].map(|v| [v.0, v.1]);
+    let chromaticities = image.attributes.chromaticities.map(|c| {
+        let flat = xy(c);
+        [0, 1, 2, 3, 4, 5, 6, 7].map(|i: usize| flat[i / 2][i % 2])
+    });
+    Ok(Layers { width: size[0], height: size[1], channels, texts, window, chromaticities })
 }
 
 fn sorted<'a>(
@@ -74,28 +93,83 @@ fn sorted<'a>(
     attributes.map(|(name, value)| (name.to_string(), value)).collect()
 }
 
-/// Writes `picture` as one part, ZIP-compressed, which every reader accepts. Texts become attributes; `software` and
-/// `comments` are standard ones.
+/// What an OpenEXR file says of its pixels.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ExrHead {
+    /// Pixels in a row, and rows, of what is stored.
+    pub size: [u32; 2],
+    /// Where they are in the whole picture.
+    pub window: Window,
+    /// Names of the channels, and whether they are stored in 16 bits.
+    pub channels: Vec<(String, bool)>,
+    /// Keyword and text: `software` and `comments` become standard attributes, others attributes of their own.
+    pub texts: Vec<(String, String)>,
+    /// CIE xy of red, green, blue and white, where they are to be told.
+    pub chromaticities: Option<[f32; 8]>,
+}
+
+/// Channels whose rows are computed as they are written, by name.
+struct Rows<'a, F> {
+    /// In the order of their names, which the format wants.
+    channels: Vec<(&'a str, bool, usize)>,
+    fill: &'a F,
+}
+
+impl<'a, F: Fn(usize, usize, &mut [f32]) + Sync> WritableChannels<'a> for Rows<'a, F> {
+    type Writer = &'a Self;
+
+    fn infer_channel_list(&self) -> ChannelList {
+        let channel = |&(name, is_half, _): &(&str, bool, usize)| {
+            let kind = if is_half { SampleType::F16 } else { SampleType::F32 };
+            ChannelDescription::named(name, kind)
+        };
+        ChannelList::new(self.channels.iter().map(channel).collect())
+    }
+
+    fn infer_level_modes(&self) -> (LevelMode, RoundingMode) {
+        (LevelMode::Singular, RoundingMode::Down)
+    }
+
+    fn create_writer(&'a self, _: &Header) -> &'a Self {
+        self
+    }
+}
+
+impl<F: Fn(usize, usize, &mut [f32]) + Sync> ChannelsWriter for &Rows<'_, F> {
+    fn extract_uncompressed_block(&self, _: &Header, block: BlockIndex) -> Vec<u8> {
+        let (width, left) = (block.pixel_size.width(), block.pixel_position.x());
+        let mut bytes = Vec::with_capacity(block.pixel_size.area() * self.channels.len() * 4);
+        let mut values = vec![0.0_f32; left + width];
+        for y in block.pixel_position.y()..block.pixel_position.y() + block.pixel_size.height() {
+            for &(_, is_half, channel) in &self.channels {
+                (self.fill)(channel, y, &mut values);
+                for &x in &values[left..] {
+                    if is_half {
+                        // Nothing becomes infinite by having fewer bits.
+                        let x = if x.is_finite() { x.clamp(-65504.0, 65504.0) } else { x };
+                        bytes.extend(f16::from_f32(x).to_ne_bytes());
+                    } else {
+                        bytes.extend(x.to_ne_bytes());
+                    }
+                }
+            }
+        }
+        bytes
+    }
+}
+
+/// Writes a picture as one part, ZIP-compressed, which every reader accepts: `fill` is told a channel's index and a row,
+/// and fills in the values.
 ///
 /// # Errors
 /// What `out` says.
-pub fn encode_exr(picture: &Layers, out: impl Write + Seek) -> io::Result<()> {
-    let channels = picture
-        .channels
-        .iter()
-        .map(|c| {
-            let samples = if c.is_half {
-                // Nothing becomes infinite by having fewer bits.
-                let most = |x: &f32| if x.is_finite() { x.clamp(-65504.0, 65504.0) } else { *x };
-                FlatSamples::F16(c.values.iter().map(most).map(f16::from_f32).collect())
-            } else {
-                FlatSamples::F32(c.values.clone())
-            };
-            AnyChannel::new(c.name.as_str(), samples)
-        })
-        .collect();
+pub fn encode_exr_rows(
+    head: &ExrHead,
+    fill: &(impl Fn(usize, usize, &mut [f32]) + Sync),
+    out: impl Write + Seek,
+) -> io::Result<()> {
     let mut attributes = LayerAttributes::default();
-    for (keyword, text) in &picture.texts {
+    for (keyword, text) in &head.texts {
         let value = Text::new_or_none(ascii(text)).unwrap_or_default();
         match keyword.as_str() {
             "software" => attributes.software_name = Some(value),
@@ -105,14 +179,51 @@ pub fn encode_exr(picture: &Layers, out: impl Write + Seek) -> io::Result<()> {
             }
         }
     }
+    attributes.layer_position = Vec2(head.window.at[0], head.window.at[1]);
     let encoding =
         Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
-    let size = (picture.width as usize, picture.height as usize);
-    let image = Image::from_layer(Layer::new(size, attributes, encoding, AnyChannels::sort(channels)));
+    let [width, height] = head.size.map(|s| s as usize);
+    let mut channels: Vec<_> =
+        head.channels.iter().enumerate().map(|(i, (name, is_half))| (name.as_str(), *is_half, i)).collect();
+    channels.sort_unstable();
+    let mut image = Image::from_layer(Layer::new((width, height), attributes, encoding, Rows { channels, fill }));
+    if head.window.display != [0, 0] {
+        let [w, h] = head.window.display.map(|s| s as usize);
+        let origin = Vec2(head.window.origin[0], head.window.origin[1]);
+        image.attributes.display_window = IntegerBounds::new(origin, Vec2(w, h));
+    }
+    if let Some([rx, ry, gx, gy, bx, by, wx, wy]) = head.chromaticities {
+        image.attributes.chromaticities =
+            Some(Chromaticities { red: Vec2(rx, ry), green: Vec2(gx, gy), blue: Vec2(bx, by), white: Vec2(wx, wy) });
+    }
     image.write().to_buffered(out).map_err(|error| match error {
         exr::error::Error::Io(error) => error,
         error => io::Error::other(error.to_string()),
     })
+}
+
+/// [`encode_exr_rows`] of a picture in memory.
+///
+/// # Errors
+/// What `out` says.
+pub fn encode_exr(picture: &Layers, out: impl Write + Seek) -> io::Result<()> {
+    let head = ExrHead {
+        size: [picture.width, picture.height],
+        window: picture.window,
+        channels: picture.channels.iter().map(|c| (c.name.clone(), c.is_half)).collect(),
+        texts: picture.texts.clone(),
+        chromaticities: picture.chromaticities,
+    };
+    let width = picture.width as usize;
+    let fill = |channel: usize, y: usize, row: &mut [f32]| {
+        row.copy_from_slice(&picture.channels[channel].values[y * width..(y + 1) * width]);
+    };
+    encode_exr_rows(&head, &fill, out)
+}
+
+/// Are these the bytes of an OpenEXR file?
+pub(super) fn is_exr(bytes: &[u8]) -> bool {
+    bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01])
 }
 
 /// Text in ASCII, which is all that attributes are sure to keep: other characters as in JSON, `\\u6728`.
@@ -133,7 +244,7 @@ fn ascii(text: &str) -> String {
 /// # Errors
 /// A sentence: neither, truncated, too large, without colours, or of another shape.
 pub fn decode_panorama(bytes: &[u8]) -> Result<Panorama, String> {
-    let (width, height, pixels) = if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
+    let (width, height, pixels) = if is_exr(bytes) {
         let layers = decode_exr(bytes)?;
         (layers.width, layers.height, layers.pixels(["R", "G", "B"]).ok_or("it has no channels R, G and B")?)
     } else {
@@ -169,6 +280,8 @@ mod tests {
                 ("comments".to_owned(), "{\"a\":1}".to_owned()),
                 ("cryptomatte/1/name".to_owned(), "x".to_owned()),
             ],
+            window: Window { at: [-1, 4], origin: [0, 0], display: [12, 8] },
+            chromaticities: Some([0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329]),
         };
         let mut bytes = Cursor::new(Vec::new());
         encode_exr(&picture, &mut bytes).unwrap();

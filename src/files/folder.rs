@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use include_dir::{Dir, include_dir};
 
@@ -28,8 +28,8 @@ impl Folder {
     pub fn read(&self, name: &str) -> Result<Vec<u8>, String> {
         let wrong = |reason: &dyn std::fmt::Display| format!("cannot read `{name}`: {reason}");
         match self {
-            Self::Embedded(folder) => SCENES
-                .get_file(folder.join(name))
+            Self::Embedded(folder) => inside(&folder.join(name))
+                .and_then(|path| SCENES.get_file(path))
                 .map(|file| file.contents().to_vec())
                 .ok_or_else(|| wrong(&"it is not among the embedded files")),
             Self::Disk(folder) => {
@@ -49,6 +49,19 @@ impl Folder {
             }
         }
     }
+}
+
+/// A path without `..`; `None` where it leads out.
+fn inside(path: &Path) -> Option<PathBuf> {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::Normal(name) => plain.push(name),
+            Component::ParentDir if !plain.pop() => return None,
+            _ => {}
+        }
+    }
+    Some(plain)
 }
 
 /// The embedded scenes: name (path without `.toml`), text, and the folder of their files; sorted by name.

@@ -7,15 +7,19 @@ mod exr;
 mod folder;
 mod mesh;
 mod picture;
+mod plate;
 mod seal;
 mod sketch;
 mod whole;
 
-pub use self::exr::{decode_exr, decode_panorama, encode_exr};
+pub use self::exr::{ExrHead, decode_exr, decode_panorama, encode_exr, encode_exr_rows};
 pub use cryptomatte::add_mattes;
 pub use folder::{Folder, embedded_scenes};
 pub use mesh::decode_obj;
-pub use picture::{Rgba, decode_grey, decode_linear, decode_png, encode_png, encode_png16, png_texts, resize};
+pub use picture::{
+    PngHead, Rgba, decode_grey, decode_linear, decode_png, encode_png, encode_png_rows, encode_png16, png_texts, resize,
+};
+pub use plate::{ACESCG, REC709, decode_plate, resize_grey, resize_plate, set_chromaticities};
 pub use seal::{is_edited, seal};
 pub use sketch::{Page, decode_sketch, draw_svg};
 pub use whole::{write_bytes, write_whole};

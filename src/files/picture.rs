@@ -98,7 +98,7 @@ pub fn decode_linear(bytes: &[u8]) -> Result<Layers, String> {
         is_half: false,
     });
     let channels = channels.collect();
-    Ok(Layers { width, height, channels, texts: png_texts(bytes) })
+    Ok(Layers { width, height, channels, texts: png_texts(bytes), ..Layers::default() })
 }
 
 /// The texts of a PNG picture; none of any other.
@@ -120,12 +120,29 @@ pub fn resize(picture: &Rgba, width: u32, height: u32) -> Rgba {
     Rgba { width, height, bytes: scaled.into_raw() }
 }
 
+/// What a PNG file says of its pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct PngHead<'a> {
+    /// Pixels in a row, and rows.
+    pub size: [u32; 2],
+    /// 16 bits a channel, big-endian, in place of 8.
+    pub is_deep: bool,
+    /// With alpha, not premultiplied.
+    pub has_alpha: bool,
+    /// An ICC profile; without it colours are sRGB.
+    pub profile: Option<&'a [u8]>,
+    /// Keyword and text.
+    pub texts: &'a [(&'a str, &'a str)],
+}
+
 /// Writes `picture` as a PNG of 8 bits a channel with sRGB colours and these texts (keyword, text).
 ///
 /// # Errors
 /// What `out` says.
 pub fn encode_png(picture: &Rgba, texts: &[(&str, &str)], out: impl Write) -> io::Result<()> {
-    write_png([picture.width, picture.height], png::BitDepth::Eight, &picture.bytes, texts, out)
+    let size = [picture.width, picture.height];
+    let head = PngHead { size, is_deep: false, has_alpha: true, profile: None, texts };
+    encode_png_rows(&head, std::iter::once(&picture.bytes[..]), out)
 }
 
 /// [`encode_png`] of 16 bits a channel: four values a pixel.
@@ -134,27 +151,38 @@ pub fn encode_png(picture: &Rgba, texts: &[(&str, &str)], out: impl Write) -> io
 /// What `out` says.
 pub fn encode_png16(size: [u32; 2], values: &[u16], texts: &[(&str, &str)], out: impl Write) -> io::Result<()> {
     let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_be_bytes()).collect();
-    write_png(size, png::BitDepth::Sixteen, &bytes, texts, out)
+    let head = PngHead { size, is_deep: true, has_alpha: true, profile: None, texts };
+    encode_png_rows(&head, std::iter::once(&bytes[..]), out)
 }
 
-fn write_png(
-    [width, height]: [u32; 2],
-    depth: png::BitDepth,
-    bytes: &[u8],
-    texts: &[(&str, &str)],
+/// Writes a PNG from parts of any number of rows, in order.
+///
+/// # Errors
+/// What `out` says.
+pub fn encode_png_rows<T: AsRef<[u8]>>(
+    head: &PngHead<'_>,
+    parts: impl Iterator<Item = T>,
     out: impl Write,
 ) -> io::Result<()> {
-    let mut encoder = png::Encoder::new(out, width, height);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(depth);
+    let mut info = png::Info::with_size(head.size[0], head.size[1]);
+    info.color_type = if head.has_alpha { png::ColorType::Rgba } else { png::ColorType::Rgb };
+    info.bit_depth = if head.is_deep { png::BitDepth::Sixteen } else { png::BitDepth::Eight };
+    match head.profile {
+        Some(profile) => info.icc_profile = Some(profile.into()),
+        None => info.srgb = Some(png::SrgbRenderingIntent::Perceptual),
+    }
+    let mut encoder = png::Encoder::with_info(out, info).map_err(io::Error::other)?;
     // A tenth of the time of the default, for a few per cent of size.
     encoder.set_compression(png::Compression::Fast);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    for (keyword, text) in texts {
+    for (keyword, text) in head.texts {
         encoder.add_itxt_chunk((*keyword).to_owned(), (*text).to_owned()).map_err(io::Error::other)?;
     }
     let mut writer = encoder.write_header().map_err(io::Error::other)?;
-    writer.write_image_data(bytes).map_err(io::Error::other)?;
+    let mut stream = writer.stream_writer().map_err(io::Error::other)?;
+    for part in parts {
+        stream.write_all(part.as_ref())?;
+    }
+    stream.finish().map_err(io::Error::other)?;
     writer.finish().map_err(io::Error::other)
 }
 

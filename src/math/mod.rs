@@ -11,7 +11,7 @@ mod random;
 mod srgb;
 pub mod tolerance;
 
-pub use glam::{DVec2, DVec3};
+pub use glam::{DMat3, DVec2, DVec3};
 
 pub use name::{Colour, Degrees, Point, Ref, unknown};
 pub use power::power;

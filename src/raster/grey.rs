@@ -16,6 +16,18 @@ impl Grey {
         (fits && !values.is_empty()).then_some(Self { width, height, values })
     }
 
+    /// Pixels in a row, and rows.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
+    /// The value of a pixel.
+    #[must_use]
+    pub fn pixel(&self, x: u32, y: u32) -> f32 {
+        self.values[y as usize * self.width as usize + x as usize]
+    }
+
     /// Width over height.
     #[must_use]
     pub fn aspect(&self) -> f64 {

@@ -1,5 +1,7 @@
 //! Pictures of any number of named channels.
 
+use super::Window;
+
 /// One channel of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
@@ -22,6 +24,10 @@ pub struct Layers {
     pub channels: Vec<Channel>,
     /// Keyword and text.
     pub texts: Vec<(String, String)>,
+    /// Where these pixels are in the whole picture.
+    pub window: Window,
+    /// CIE xy of red, green, blue and white, where they are told.
+    pub chromaticities: Option<[f32; 8]>,
 }
 
 impl Layers {

@@ -5,9 +5,11 @@
 mod grey;
 mod layers;
 mod panorama;
+mod plate;
 mod tone;
 
 pub use grey::Grey;
 pub use layers::{Channel, Layers};
 pub use panorama::Panorama;
+pub use plate::{Plate, Samples, Window};
 pub use tone::filmic;

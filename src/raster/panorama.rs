@@ -41,7 +41,7 @@ impl Panorama {
             is_half: true,
         };
         let channels = ["R", "G", "B"].into_iter().enumerate().map(channel).collect();
-        Layers { width: self.width, height: self.height, channels, texts: Vec::new() }
+        Layers { width: self.width, height: self.height, channels, ..Layers::default() }
     }
 
     /// The light from a direction of length 1, between pixel centres by bilinear interpolation; rows go around, columns
