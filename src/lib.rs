@@ -64,6 +64,7 @@ pub mod compare;
 pub mod export;
 pub mod files;
 pub mod geom;
+pub mod glow;
 pub mod graph;
 pub mod grow;
 pub mod math;
