@@ -2,10 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::{Resolved, SceneError};
+use super::{LightsSpec, Resolved, SceneError};
 use crate::grow::{GrowError, Grown, Mark, MarkKind};
-use crate::math::{Cancelled, DVec3, Progress};
-use crate::model::{Camera, Ground, Instance, Material, Model, Object, to_world};
+use crate::math::{Cancelled, Colour, DVec3, Progress};
+use crate::model::{Camera, Ground, Instance, Light, Material, Model, Object, Projection, Stroke, shining, to_world};
+use crate::skeleton::Skeleton;
 
 /// The ground has faded into the horizon at this many times the camera's distance or the scene's size.
 const GROUND_REACH: f64 = 2.5;
@@ -41,18 +42,27 @@ pub fn grow(scene: &Resolved, show: &[MarkKind], max_memory: u64, progress: &Pro
     if needed > max_memory {
         return Err(Stage::Memory { needed, limit: max_memory });
     }
-    let grow = |step: &crate::grow::Step| step.grow(scene.seed, show, progress);
-    // Side by side where memory allows; the result is the same.
-    let together: u64 = scene.steps.iter().map(crate::grow::Step::bytes_needed).sum();
-    let grown: Result<Vec<Grown>, GrowError> = if together <= max_memory {
-        scene.steps.par_iter().map(grow).collect()
-    } else {
-        scene.steps.iter().map(grow).collect()
-    };
-    grown.map_err(|error| match error {
-        GrowError::Scene { place, message } => Stage::Scene(scene.error(&place, message)),
-        GrowError::Cancelled(cancelled) => Stage::Cancelled(cancelled),
-    })
+    let mut grown: Vec<Option<Grown>> = scene.steps.iter().map(|_| None).collect();
+    // A round holds all steps that wait for nothing that has not grown; it reads only what the rounds before made.
+    while grown.iter().any(Option::is_none) {
+        let is_ready = |i: &usize| grown[*i].is_none() && scene.steps[*i].after().all(|before| grown[before].is_some());
+        let round: Vec<usize> = (0..grown.len()).filter(is_ready).collect();
+        let earlier: Vec<Option<&Skeleton>> = grown.iter().map(|g| g.as_ref().map(|g| &g.skeleton)).collect();
+        let grow = |&i: &usize| scene.steps[i].grow(scene.seed, &earlier, show, progress);
+        // Side by side where memory allows; the result is the same.
+        let together: u64 = round.iter().map(|&i| scene.steps[i].bytes_needed()).sum();
+        let finished: Result<Vec<Grown>, GrowError> = if together <= max_memory {
+            round.par_iter().map(grow).collect()
+        } else {
+            round.iter().map(grow).collect()
+        };
+        let finished = finished.map_err(|error| match error {
+            GrowError::Scene { place, message } => Stage::Scene(scene.error(&place, message)),
+            GrowError::Cancelled(cancelled) => Stage::Cancelled(cancelled),
+        })?;
+        round.into_iter().zip(finished).for_each(|(i, step)| grown[i] = Some(step));
+    }
+    Ok(grown.into_iter().flatten().collect())
 }
 
 /// The model of a scene from what its steps yielded, for a picture of `size` pixels.
@@ -61,13 +71,34 @@ pub fn grow(scene: &Resolved, show: &[MarkKind], max_memory: u64, progress: &Pro
 /// [`Stage::Scene`] where an object cannot be shown or the camera is wrong.
 pub fn model(scene: &Resolved, grown: &[Grown], size: [u32; 2]) -> Result<Model, Stage> {
     let mut objects = Vec::new();
+    let mut strokes = Vec::new();
+    let mut lights = scene.lights.clone();
     for plan in &scene.objects {
-        let skeletons: Vec<_> = plan.steps.iter().map(|&step| &grown[step].skeleton).collect();
+        let whole: Vec<_> = plan.steps.iter().map(|&step| &grown[step].skeleton).collect();
+        let young: Vec<Skeleton>;
+        let skeletons = if plan.until < 1.0 {
+            let oldest = whole.iter().flat_map(|s| &s.nodes).map(|n| n.age).fold(0.0, f64::max);
+            young = whole.iter().map(|s| s.until(oldest * plan.until)).collect();
+            young.iter().collect()
+        } else {
+            whole
+        };
+        if let Some(glow) = plan.glow {
+            strokes.push(Stroke::new(&plan.name, &skeletons, plan.at.truncate(), glow));
+        }
+        if let Some(spec) = &plan.lights {
+            lights.extend(lights_along(&skeletons, plan.at, spec));
+        }
+        // What has not begun to grow, or shines alone, needs no skin.
+        if plan.mesh.is_none() && skeletons.iter().all(|s| s.nodes.is_empty()) && plan.until < 1.0 {
+            continue;
+        }
         let object = match &plan.mesh {
             Some(mesh) => Object::of_mesh(&plan.name, mesh, plan.at, plan.material),
             None => plan.skin.dress(&plan.name, &skeletons, scene.is_flat, plan.at, plan.material),
         };
         let mut object = object.map_err(|error| scene.error(&format!("object.{}", plan.name), error.to_string()))?;
+        object.shadow = plan.shadow;
         let (first, digits) = (object.instances[0].at, object.digits);
         object.instances.extend(plan.copies.iter().map(|copy| Instance {
             at: digits.round_point(first + to_world(copy.at - plan.at, scene.is_flat)),
@@ -85,20 +116,44 @@ pub fn model(scene: &Resolved, grown: &[Grown], size: [u32; 2]) -> Result<Model,
         }));
     }
     let aspect = f64::from(size[0]) / f64::from(size[1]);
+    if let Some(view) = &scene.view {
+        // Its rectangle, seen from the front, fills the picture.
+        let middle = to_world(view.frame.bounds().centre(), true);
+        let [width, height] = view.frame.extent;
+        let camera = Camera {
+            at: middle - DVec3::Y * (width + height),
+            look_at: middle,
+            projection: Projection::Parallel { width },
+            aspect,
+        };
+        return Ok(assemble(scene, objects, strokes, lights, marks, camera));
+    }
     let balls = objects.iter().flat_map(Object::balls_in_world);
     let drawn = marks.iter().flat_map(|m| m.line.iter().map(|&p| (p, 0.0)));
     let camera =
         Camera::new(&scene.camera, aspect, balls.chain(drawn)).map_err(|message| scene.error("camera", message))?;
+    Ok(assemble(scene, objects, strokes, lights, marks, camera))
+}
+
+fn assemble(
+    scene: &Resolved,
+    objects: Vec<Object>,
+    strokes: Vec<Stroke>,
+    lights: Vec<Light>,
+    marks: Vec<Mark>,
+    camera: Camera,
+) -> Model {
     let mut model = Model {
         title: scene.title.clone(),
         is_flat: scene.is_flat,
         objects,
         materials: scene.materials.clone(),
         camera,
-        lights: scene.lights.clone(),
+        lights,
         ground: None,
         sky: scene.sky.clone(),
         marks,
+        strokes,
     };
     let extent = model.bounds().size().max_element().max((camera.at - camera.look_at).length());
     model.ground = scene.ground.map(|ground| Ground {
@@ -107,5 +162,26 @@ pub fn model(scene: &Resolved, grown: &[Grown], size: [u32; 2]) -> Result<Model,
         reach: extent * GROUND_REACH,
         radius: ground.radius,
     });
-    Ok(model)
+    model
+}
+
+/// Lights along the core of what grew: evenly spaced along its paths.
+fn lights_along(skeletons: &[&Skeleton], at: DVec3, spec: &LightsSpec) -> Vec<Light> {
+    let core = shining(skeletons).filter(|(.., is_core)| *is_core);
+    let pieces: Vec<(DVec3, DVec3)> = core.map(|(from, to, _)| (from.position, to.position)).collect();
+    let length: f64 = pieces.iter().map(|(a, b)| (*b - *a).length()).sum();
+    let Colour(colour) = spec.colour;
+    let one = Colour(colour.map(|c| c / f64::from(spec.count)));
+    let mut lights = Vec::new();
+    let mut gone = 0.0;
+    for (a, b) in pieces {
+        let step = (b - a).length();
+        let next = |made: usize| length * (made as f64 + 0.5) / f64::from(spec.count);
+        while lights.len() < spec.count as usize && gone + step > next(lights.len()) {
+            let p = a + (b - a) * ((next(lights.len()) - gone) / step);
+            lights.push(Light::Point { at: p + at, colour: one, shadow: false, fade: Some(spec.fade) });
+        }
+        gone += step;
+    }
+    lights
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::grow::{Grown, Step};
 use crate::math::Ref;
-use crate::skeleton::{Skeleton, measure};
+use crate::skeleton::{Skeleton, apart, crossings, dimension, floating, measure, shared_ends};
 
 /// A claim about a step: one quantity, and what it is held against.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -32,7 +32,7 @@ pub struct Claim {
     #[serde(default = "one")]
     #[schemars(range(min = 1.0, max = 1e6))]
     pub times: f64,
-    /// For `shared`: the other step.
+    /// For `shared`, `floating`, `crossings`, `apart` and `dimension`: the other step.
     #[serde(default)]
     pub with: Option<Ref<Step>>,
 }
@@ -41,7 +41,7 @@ fn one() -> f64 {
     1.0
 }
 
-/// What a claim measures; all but `shared` are fields of [`crate::skeleton::Measurement`].
+/// What a claim measures: fields of [`crate::skeleton::Measurement`], and how two steps lie to each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
@@ -61,8 +61,26 @@ pub enum Quantity {
     Spread,
     /// Length up to the first fork, as a share of the greatest height.
     Trunk,
+    /// Number of nodes of the skeleton.
+    Nodes,
+    /// How far the lowest end lies below the root.
+    Depth,
+    /// Share of the paths that end lower than they start.
+    Falling,
+    /// The greatest radius.
+    Radius,
+    /// The greatest radius over the mean one at the ends.
+    Taper,
+    /// Box-counting dimension, with the step `with` where there is one.
+    Dimension,
     /// Share of the step's endpoints that are endpoints of the step `with` too.
     Shared,
+    /// Number of limbs that do not start on the step `with`.
+    Floating,
+    /// How often limbs cross those of the step `with`; without it, each other.
+    Crossings,
+    /// The greatest distance from the limbs of the step `with`.
+    Apart,
 }
 
 impl Quantity {
@@ -77,12 +95,17 @@ impl Quantity {
             Self::ForkHeight => m.fork_height,
             Self::Spread => m.spread,
             Self::Trunk => m.trunk,
-            Self::Shared => with.map_or(0.0, |with| {
-                let ends =
-                    |s: &Skeleton| -> Vec<_> { s.paths.iter().map(|p| s.nodes[p.end as usize].position).collect() };
-                let (own, other) = (ends(skeleton), ends(with));
-                own.iter().filter(|p| other.contains(p)).count() as f64 / own.len().max(1) as f64
-            }),
+            Self::Nodes => m.nodes as f64,
+            Self::Depth => m.depth,
+            Self::Falling => m.falling,
+            Self::Radius => m.radius,
+            Self::Taper => m.taper,
+            // Without the other step these hold nothing: no claim is met.
+            Self::Shared => with.map_or(0.0, |with| shared_ends(skeleton, with)),
+            Self::Floating => with.map_or(f64::INFINITY, |with| floating(skeleton, with) as f64),
+            Self::Apart => with.map_or(f64::INFINITY, |with| apart(skeleton, with)),
+            Self::Dimension => with.map_or(m.dimension, |with| dimension(&[skeleton, with])),
+            Self::Crossings => crossings(skeleton, with.unwrap_or(skeleton)) as f64,
         }
     }
 }

@@ -6,11 +6,11 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::tree::Entry;
-use super::{Claim, Mistake};
+use super::{Claim, Mistake, TrackSpec};
 use crate::geom::ShapeSpec;
 use crate::grow::{MarkKind, SpaceSpec, Step, StepSpec};
-use crate::math::{Degrees, Point, Ref};
-use crate::model::{CameraSpec, GroundSpec, LightSpec, Material, Skin, SkySpec};
+use crate::math::{Colour, Degrees, Point, Ref};
+use crate::model::{CameraSpec, GlowSpec, GroundSpec, LightSpec, Material, Skin, SkySpec, ViewSpec};
 
 /// A scene: named growth steps in named spaces, the objects that they become, and how these are seen.
 ///
@@ -34,10 +34,13 @@ pub struct Scene {
     #[serde(default = "first_seed")]
     #[schemars(range(min = 0, max = 9_007_199_254_740_991_u64))]
     pub seed: u64,
-    /// Size of its picture in pixels: width, height.
-    #[serde(default = "default_size")]
-    #[schemars(inner(range(min = 16, max = 16384)))]
-    pub size: [u32; 2],
+    /// Size of its picture in pixels: width, height; by default the photograph's, or 640 x 480.
+    #[serde(default)]
+    #[schemars(inner(range(min = 1, max = 32768)))]
+    pub size: Option<[u32; 2]>,
+    /// In a flat scene: the picture as a place to draw on, over a photograph or over black.
+    #[serde(default)]
+    pub view: Option<ViewSpec>,
     /// Draw it as a schematic, with these marks of its construction.
     #[serde(default)]
     pub show: Vec<MarkKind>,
@@ -50,7 +53,7 @@ pub struct Scene {
     pub grow: BTreeMap<String, StepSpec>,
     /// What is seen, by name.
     pub object: BTreeMap<String, ObjectSpec>,
-    /// Materials, by name. `bark` and, for flat scenes, `ink` are there already.
+    /// Materials, by name. `bark` and, for flat scenes, `ink` (black; white with a `[view]`) are there already.
     #[serde(default)]
     pub material: BTreeMap<String, Material>,
     /// The view; by default from the front, fitted to the objects.
@@ -62,9 +65,13 @@ pub struct Scene {
     /// The ground; by default none.
     #[serde(default)]
     pub ground: Option<GroundSpec>,
-    /// What is behind everything; by default white for flat scenes, a pale sky in space.
+    /// What is behind everything; by default white for flat scenes, black with a `[view]`, a
+    /// pale sky in space.
     #[serde(default)]
     pub sky: Option<SkySpec>,
+    /// What changes from frame to frame, by name.
+    #[serde(default)]
+    pub animation: BTreeMap<String, TrackSpec>,
     /// What the scene claims of its steps, as numbers that `check` and the tests read, by name.
     #[serde(default)]
     pub claim: BTreeMap<String, Claim>,
@@ -93,6 +100,19 @@ pub struct ObjectSpec {
     /// How far it is moved from where it grew.
     #[serde(default)]
     pub at: Option<Point>,
+    /// In a scene with `[view]`: how it shines.
+    #[serde(default)]
+    pub glow: Option<GlowSpec>,
+    /// How much of it has grown: 1 all of it, 0 nothing, by the cost of the way from where growth began.
+    #[serde(default = "whole")]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub until: f64,
+    /// Does it cast shadows? What shines from within, by lights along it, should not.
+    #[serde(default = "yes")]
+    pub shadow: bool,
+    /// Lights along its core, in space.
+    #[serde(default)]
+    pub lights: Option<LightsSpec>,
     /// Where else it stands: instances, which take next to no memory.
     #[serde(default)]
     pub copies: Vec<CopySpec>,
@@ -113,8 +133,27 @@ pub struct CopySpec {
     pub scale: f64,
 }
 
+/// Lights along the limbs of an object: without shadow, evenly spaced along its paths of class `main`.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LightsSpec {
+    /// How many.
+    #[schemars(range(min = 1, max = 64))]
+    pub count: u32,
+    /// Their colour times their strength, all together.
+    pub colour: Colour,
+    /// Distance over which their light falls off: at it there is as much as they have, far from it `2 (fade / d)^2` of
+    /// that.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+    pub fade: f64,
+}
+
 fn whole() -> f64 {
     1.0
+}
+
+fn yes() -> bool {
+    true
 }
 
 fn first_edition() -> u32 {
@@ -123,10 +162,6 @@ fn first_edition() -> u32 {
 
 fn first_seed() -> u64 {
     1
-}
-
-fn default_size() -> [u32; 2] {
-    [640, 480]
 }
 
 /// The document of a tree that was found valid.

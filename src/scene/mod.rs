@@ -2,20 +2,23 @@
 //!
 //! Later stages need never handle an unknown key, a name that leads nowhere, or a number out of range.
 
+mod animation;
 mod build;
 mod claim;
 mod document;
 mod mistake;
 mod resolve;
 mod schema;
+mod steps;
 mod tree;
 mod validate;
 
+pub use animation::TrackSpec;
 pub use build::{Stage, grow, model};
 pub use claim::{Claim, Finding, Quantity, check_claims};
-pub use document::{ObjectSpec, Scene};
+pub use document::{LightsSpec, ObjectSpec, Scene};
 pub use mistake::{Mistake, SceneError};
-pub use resolve::{ObjectPlan, Resolved};
+pub use resolve::{ObjectPlan, Resolved, View};
 pub use schema::{schema, schema_markdown};
 pub use tree::Override;
 
@@ -64,8 +67,19 @@ pub struct Source {
 /// # Errors
 /// [`SceneError`] with every mistake found.
 pub fn load(source: &Source, overrides: &[Override]) -> Result<Resolved, SceneError> {
+    load_frame(source, overrides, None)
+}
+
+/// [`load`] with every value that `[animation]` moves as it is at `frame`.
+///
+/// # Errors
+/// [`SceneError`] with every mistake found.
+pub fn load_frame(source: &Source, overrides: &[Override], frame: Option<f64>) -> Result<Resolved, SceneError> {
     let (mut tree, mut mistakes) = tree::parse(&source.text);
     tree::apply(&mut tree, overrides, &mut mistakes);
+    if let Some(frame) = frame {
+        animation::animate(&mut tree, frame, &mut mistakes);
+    }
     tree::inherit(&mut tree, &mut mistakes);
     if mistakes.is_empty() {
         validate::validate(&tree, schema(), &mut mistakes);

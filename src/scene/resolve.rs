@@ -4,16 +4,16 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::tree::Entry;
-use super::{Claim, Mistake, ObjectSpec, Scene, SceneError, Source};
-use crate::files::{Folder, decode_grey, decode_obj, decode_panorama, decode_sketch};
-use crate::geom::{Bounds, Shape, ShapeSpec, Strokes};
-use crate::graph::{CostField, FieldSpec, FieldUse, HeightEnd, Measure, MeasureSpec};
-use crate::grow::{
-    EndpointSpec, Endpoints, FromSpec, LatticeSpec, MarkKind, NodesSpec, Placement, Source as Generators, Space,
-    SpaceSpec, Step, StepSpec,
+use super::{Claim, LightsSpec, Mistake, ObjectSpec, Scene, SceneError, Source};
+use crate::files::{Folder, decode_grey, decode_obj, decode_panorama, decode_plate, resize_grey, resize_plate};
+use crate::geom::{Shape, ShapeSpec};
+use crate::grow::{MarkKind, NodesSpec, Space, SpaceSpec, Step};
+use crate::math::{Colour, DVec3, Degrees, Ref, unknown};
+use crate::model::{
+    CameraSpec, GlowSpec, GroundSpec, Instance, Light, LightSpec, Material, Mesh, Skin, Sky, SkySpec, ViewFrame,
+    ViewSpec,
 };
-use crate::math::{Colour, DVec2, DVec3, Degrees, Point, Ref, unknown};
-use crate::model::{CameraSpec, GroundSpec, Instance, Light, LightSpec, Material, Mesh, Skin, Sky, SkySpec};
+use crate::raster::{Grey, Plate};
 
 /// A scene whose names and files are resolved.
 #[derive(Clone, Debug)]
@@ -28,6 +28,8 @@ pub struct Resolved {
     pub show: Vec<MarkKind>,
     /// Is it flat, with y up?
     pub is_flat: bool,
+    /// In a flat scene: the picture as a place to draw on.
+    pub view: Option<View>,
     /// Growth steps, by name.
     pub steps: Vec<Step>,
     /// What is seen.
@@ -48,6 +50,17 @@ pub struct Resolved {
     tree: Entry,
 }
 
+/// A view whose files are read.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// The rectangle.
+    pub frame: ViewFrame,
+    /// The photograph, if any.
+    pub plate: Option<Arc<Plate>>,
+    /// Where something is nearer than the strokes: white.
+    pub matte: Option<Arc<Grey>>,
+}
+
 /// An object whose names are resolved.
 #[derive(Clone, Debug)]
 pub struct ObjectPlan {
@@ -65,6 +78,14 @@ pub struct ObjectPlan {
     pub at: DVec3,
     /// Where else it stands; their `at` is how far it is moved.
     pub copies: Vec<Instance>,
+    /// How it shines.
+    pub glow: Option<GlowSpec>,
+    /// How much of it has grown, from 0 to 1.
+    pub until: f64,
+    /// Does it cast shadows?
+    pub shadow: bool,
+    /// Lights along it.
+    pub lights: Option<LightsSpec>,
 }
 
 impl Resolved {
@@ -88,15 +109,31 @@ impl Resolved {
     }
 }
 
-struct Resolver<'a> {
-    scene: &'a Scene,
-    folder: &'a Folder,
+pub(super) struct Resolver<'a> {
+    pub scene: &'a Scene,
+    pub folder: &'a Folder,
     tree: &'a Entry,
     mistakes: &'a mut Vec<Mistake>,
 }
 
 /// Resolves `scene`; adds what is wrong with it.
-pub(super) fn resolve(scene: Scene, source: &Source, tree: &Entry, mistakes: &mut Vec<Mistake>) -> Option<Resolved> {
+pub(super) fn resolve(
+    mut scene: Scene,
+    source: &Source,
+    tree: &Entry,
+    mistakes: &mut Vec<Mistake>,
+) -> Option<Resolved> {
+    let spec = scene.view.clone();
+    let (view, size) = {
+        let mut r = Resolver { scene: &scene, folder: &source.folder, tree, mistakes };
+        r.view(spec.as_ref(), scene.size)?
+    };
+    if let Some(view) = &view {
+        for (name, bounds) in [("view", view.frame.bounds()), ("sky", view.frame.sky())] {
+            scene.shape.entry(name.to_owned()).or_insert(ShapeSpec::of_box(bounds));
+        }
+    }
+    let pixel = view.as_ref().map(|view| view.frame.pixel);
     let mut r = Resolver { scene: &scene, folder: &source.folder, tree, mistakes };
     for (name, spec) in &scene.shape {
         let shape = spec.resolve(&scene.shape);
@@ -105,7 +142,11 @@ pub(super) fn resolve(scene: Scene, source: &Source, tree: &Entry, mistakes: &mu
     let is_flat = r.is_flat();
     let spaces: BTreeMap<&String, Option<Space>> =
         scene.space.iter().map(|(name, spec)| (name, r.space(name, spec))).collect();
-    let steps: Vec<Option<Step>> = scene.grow.iter().map(|(name, spec)| r.step(name, spec, &spaces)).collect();
+    let steps: Vec<Option<Step>> = scene.grow.iter().map(|(name, spec)| r.step(name, spec, &spaces, pixel)).collect();
+    r.circles(&steps);
+    if view.is_some() && !is_flat {
+        r.wrong("view", "a view is for flat scenes: those in space have a camera".to_owned());
+    }
     let materials = r.materials(is_flat);
     let objects: Vec<Option<ObjectPlan>> =
         scene.object.iter().map(|(name, spec)| r.object(name, spec, &materials)).collect();
@@ -129,10 +170,10 @@ pub(super) fn resolve(scene: Scene, source: &Source, tree: &Entry, mistakes: &mu
     }
     let [plain, flat] =
         [CameraSpec::default(), CameraSpec { rise: Degrees(0.0), angle: Degrees(0.0), ..CameraSpec::default() }];
-    let white = Colour([1.0; 3]);
+    let paper = Colour([if scene.view.is_some() { 0.0 } else { 1.0 }; 3]);
     let pale = Sky::Gradient { horizon: Colour([0.78, 0.84, 0.88]), zenith: Colour([0.25, 0.43, 0.68]) };
     let sky =
-        scene.sky.as_ref().map_or_else(|| Some(if is_flat { Sky::plain(white) } else { pale }), |spec| r.sky(spec));
+        scene.sky.as_ref().map_or_else(|| Some(if is_flat { Sky::plain(paper) } else { pale }), |spec| r.sky(spec));
     Some(Resolved {
         is_flat,
         steps: steps.into_iter().collect::<Option<_>>()?,
@@ -145,7 +186,8 @@ pub(super) fn resolve(scene: Scene, source: &Source, tree: &Entry, mistakes: &mu
         tree: tree.clone(),
         title: scene.title,
         seed: scene.seed,
-        size: scene.size,
+        size,
+        view,
         show: scene.show,
         ground: scene.ground,
         claims: scene.claim,
@@ -153,17 +195,17 @@ pub(super) fn resolve(scene: Scene, source: &Source, tree: &Entry, mistakes: &mu
 }
 
 impl Resolver<'_> {
-    fn wrong(&mut self, place: &str, message: String) {
+    pub fn wrong(&mut self, place: &str, message: String) {
         self.mistakes.push(Mistake { span: self.tree.find_span(place), place: place.to_owned(), message });
     }
 
     /// The value, or its error noted at `place`.
-    fn note<T>(&mut self, place: &str, result: Result<T, impl ToString>) -> Option<T> {
+    pub fn note<T>(&mut self, place: &str, result: Result<T, impl ToString>) -> Option<T> {
         result.map_err(|error| self.wrong(place, error.to_string())).ok()
     }
 
     /// The index of `name` among `known`.
-    fn find<'b, T>(
+    pub fn find<'b, T>(
         &mut self,
         place: &str,
         kind: &str,
@@ -177,7 +219,7 @@ impl Resolver<'_> {
         found
     }
 
-    fn shape(&mut self, place: &str, spec: &ShapeSpec) -> Option<Shape> {
+    pub fn shape(&mut self, place: &str, spec: &ShapeSpec) -> Option<Shape> {
         let shape = spec.resolve(&self.scene.shape);
         self.note(place, shape)
     }
@@ -197,168 +239,49 @@ impl Resolver<'_> {
         is_flat
     }
 
-    fn space(&mut self, name: &str, spec: &SpaceSpec) -> Option<Space> {
-        let place = format!("space.{name}");
-        let shape = self.shape(&format!("{place}.shape"), &spec.shape);
-        let forbid = match &spec.forbid {
-            Some(forbid) => Some(self.shape(&format!("{place}.forbid"), forbid)?),
-            None => None,
-        };
-        let NodesSpec::Lattice(LatticeSpec { spacing, neighbours }) = spec.nodes;
-        let shape = shape?;
-        let window =
-            self.note(&format!("{place}.nodes.lattice.spacing"), Space::window(&shape, spacing, neighbours))?;
-        let up = if neighbours.dimensions() == 2 { 1 } else { 2 };
-        let fields: Vec<_> = spec
-            .field
-            .iter()
-            .map(|(key, field)| self.field(&format!("{place}.field.{key}"), field, shape.bounds(), up))
-            .collect();
-        Some(Space {
-            shape,
-            forbid,
-            window,
-            neighbours,
-            weights: spec.weights,
-            fields: fields.into_iter().collect::<Option<_>>()?,
-            stream: spec.stream.clone().unwrap_or_else(|| name.to_owned()),
-        })
-    }
-
-    fn field(&mut self, place: &str, spec: &FieldSpec, frame: Bounds, up: usize) -> Option<CostField> {
-        let upright = if up == 1 { DVec3::Y } else { DVec3::Z };
-        let of = |key: &str| format!("{place}.of.{key}");
-        let measure = match &spec.of {
-            MeasureSpec::Axis { along, through } => {
-                let along = along.map_or(upright, |p| p.0);
-                let unit = along.try_normalize().ok_or("an axis needs a direction, not the zero vector");
-                Measure::Axis { through: through.map_or(DVec3::ZERO, |p| p.0), along: self.note(&of("axis"), unit)? }
-            }
-            MeasureSpec::Point(Point(p)) => Measure::Point(*p),
-            MeasureSpec::Height { cheap } => {
-                let (low, high) = (frame.min[up], frame.max[up]);
-                if low == high {
-                    self.wrong(&of("height"), "the space has no height".to_owned());
-                    return None;
-                }
-                let (cheap, dear) = if *cheap == HeightEnd::Low { (low, high) } else { (high, low) };
-                Measure::Height { up, cheap, dear }
-            }
-            MeasureSpec::Shape(shape) => Measure::Shape(self.shape(&of("shape"), shape)?),
-            MeasureSpec::Map { file } => {
-                let picture = self
-                    .folder
-                    .read(file)
-                    .and_then(|bytes| decode_grey(&bytes).map_err(|error| format!("cannot read `{file}`: {error}")));
-                Measure::Map { picture: Arc::new(self.note(&of("map.file"), picture)?), frame, up }
-            }
-            MeasureSpec::Sketch { file } => {
-                let lines = self.sketch(&of("sketch.file"), file, frame, up)?.0;
-                Measure::Sketch { strokes: Arc::new(Strokes::new(lines)), up }
-            }
-        };
-        Some(CostField {
-            measure,
-            per: spec.per,
-            power: spec.power,
-            scale: spec.scale,
-            inverse: spec.inverse,
-            multiply: spec.by == FieldUse::Multiply,
-        })
-    }
-
-    /// The strokes and the points of an SVG file, its page stretched over `frame`: (across, up, 0).
-    fn sketch(&mut self, place: &str, file: &str, frame: Bounds, up: usize) -> Option<(Vec<Vec<DVec3>>, Vec<DVec3>)> {
-        let page = self
-            .folder
-            .read(file)
-            .and_then(|bytes| decode_sketch(&bytes).map_err(|error| format!("cannot read `{file}`: {error}")));
-        let page = self.note(place, page)?;
-        let size = frame.size();
-        let stretch = |p: DVec2| DVec3::new(frame.min.x + p.x * size.x, frame.min[up] + p.y * size[up], 0.0);
-        let lines = page.lines.iter().map(|(line, _)| line.iter().map(|&p| stretch(p)).collect()).collect();
-        Some((lines, page.points().map(stretch).collect()))
-    }
-
-    fn step(&mut self, name: &str, spec: &StepSpec, spaces: &BTreeMap<&String, Option<Space>>) -> Option<Step> {
-        let place = format!("grow.{name}");
-        self.find(&format!("{place}.space"), "space", &spec.space, self.scene.space.keys());
-        let space = spaces.get(&spec.space.name).cloned().flatten();
-        let mut classes: Vec<String> = spec.to.values().map(|set| set.class.clone()).collect();
-        classes.sort();
-        classes.dedup();
-        if spec.to.is_empty() {
-            self.wrong(&format!("{place}.to"), "a step needs at least one set of endpoints, `to.NAME`".to_owned());
+    /// The view, and the size of the picture.
+    fn view(&mut self, spec: Option<&ViewSpec>, size: Option<[u32; 2]>) -> Option<(Option<View>, [u32; 2])> {
+        let Some(spec) = spec else { return Some((None, size.unwrap_or([640, 480]))) };
+        let read = |folder: &Folder, file: &str| folder.read(file);
+        let mut plate = None;
+        if let Some(file) = &spec.plate {
+            let read = read(self.folder, file)
+                .and_then(|bytes| decode_plate(&bytes).map_err(|error| format!("cannot read `{file}`: {error}")));
+            plate = Some(Arc::new(self.note("view.plate", read)?));
         }
-        let source = match &spec.from {
-            FromSpec::At(points) => Some(Generators::At(points.iter().map(|p| p.0).collect())),
-            FromSpec::Inside(shape) => self.shape(&format!("{place}.from.inside"), shape).map(Generators::Inside),
-        };
-        let widths = spec.width.check(&classes);
-        self.note(&format!("{place}.width"), widths);
-        let sets: Vec<_> = spec
-            .to
-            .iter()
-            .map(|(key, set)| {
-                let placement =
-                    self.placement(&format!("{place}.to.{key}"), &format!("{name}/{key}"), set, space.as_ref());
-                let class = classes.binary_search(&set.class).unwrap_or(0) as u16;
-                placement.map(|placement| Endpoints { name: key.clone(), class, placement })
-            })
-            .collect();
-        Some(Step {
-            name: name.to_owned(),
-            space: space?,
-            space_name: spec.space.name.clone(),
-            source: source?,
-            endpoints: sets.into_iter().collect::<Option<_>>()?,
-            classes,
-            width: spec.width.clone(),
-            smooth: spec.smooth,
-            unreached: spec.unreached,
-        })
-    }
-
-    fn placement(&mut self, place: &str, own: &str, spec: &EndpointSpec, space: Option<&Space>) -> Option<Placement> {
-        match (&spec.count, &spec.at, &spec.sketch) {
-            (Some(count), None, None) => {
-                let inside = match &spec.inside {
-                    Some(inside) => self.shape(&format!("{place}.inside"), inside)?,
-                    None => space?.shape.clone(),
-                };
-                Some(Placement::Random {
-                    count: *count,
-                    inside,
-                    apart: spec.apart,
-                    stream: spec.stream.clone().unwrap_or_else(|| own.to_owned()),
-                })
-            }
-            (None, Some(points), None) => {
-                if points.is_empty() {
-                    self.wrong(&format!("{place}.at"), "list at least one endpoint".to_owned());
-                }
-                Some(Placement::At(points.iter().map(|p| p.0).collect()))
-            }
-            (None, None, Some(file)) => {
-                let space = space?;
-                let frame = space.shape.bounds();
-                let (_, points) = self.sketch(&format!("{place}.sketch"), file, frame, space.up())?;
-                let raise = |p: DVec3| if space.up() == 1 { p } else { DVec3::new(p.x, frame.centre().y, p.y) };
-                Some(Placement::At(points.into_iter().map(raise).collect()))
-            }
-            _ => {
-                let message =
-                    "endpoints need exactly one of `count` (at random), `at` (a list) and `sketch` (an SVG file)";
-                self.wrong(place, message.to_owned());
-                None
-            }
+        let mut matte = None;
+        if let Some(file) = &spec.matte {
+            let read = read(self.folder, file)
+                .and_then(|bytes| decode_grey(&bytes).map_err(|error| format!("cannot read `{file}`: {error}")));
+            matte = Some(Arc::new(self.note("view.matte", read)?));
         }
+        let own = plate.as_ref().map(|plate| plate.frame());
+        let size = size.or(own).unwrap_or([640, 480]);
+        if let Some(matte) = &matte
+            && matte.size() != own.unwrap_or(size)
+        {
+            let ([w, h], [width, height]) = (matte.size(), own.unwrap_or(size));
+            let message = format!("the matte has {w} by {h} pixels, what it belongs to {width} by {height}");
+            self.wrong("view.matte", message);
+            return None;
+        }
+        // A photograph takes the picture's size.
+        if own.is_some_and(|own| own != size) {
+            if let Some(plate) = &mut plate {
+                let smaller = resize_plate(plate, size);
+                *plate = Arc::new(self.note("size", smaller)?);
+            }
+            matte = matte.map(|matte| Arc::new(resize_grey(&matte, size)));
+        }
+        Some((Some(View { frame: ViewFrame::new(spec, size), plate, matte }), size))
     }
 
     fn materials(&self, is_flat: bool) -> Vec<(String, Material)> {
         let mut materials = self.scene.material.clone();
         if is_flat {
-            materials.entry("ink".to_owned()).or_insert(Material::ink(Colour([0.0; 3])));
+            // What shines is white on black.
+            let ink = if self.scene.view.is_some() { 1.0 } else { 0.0 };
+            materials.entry("ink".to_owned()).or_insert(Material::ink(Colour([ink; 3])));
         } else {
             materials.entry("bark".to_owned()).or_insert(Material::matt(Colour::from_srgb([150, 130, 110])));
         }
@@ -375,6 +298,9 @@ impl Resolver<'_> {
             .collect();
         if spec.grow.is_empty() == spec.mesh.is_none() {
             self.wrong(&place, "an object has either steps (`grow`) or a `mesh`".to_owned());
+        }
+        if spec.glow.is_some() && self.scene.view.is_none() {
+            self.wrong(&format!("{place}.glow"), "only scenes with `[view]` have glowing objects".to_owned());
         }
         let mesh = match &spec.mesh {
             Some(file) => {
@@ -401,6 +327,10 @@ impl Resolver<'_> {
                 .iter()
                 .map(|copy| Instance { at: copy.at.0, turn: copy.turn.0, scale: copy.scale })
                 .collect(),
+            glow: spec.glow,
+            until: spec.until,
+            shadow: spec.shadow,
+            lights: spec.lights,
         })
     }
 
@@ -456,7 +386,7 @@ impl Resolver<'_> {
                         shadow,
                     })
                 }
-                LightSpec::Point { at, colour, shadow } => Some(Light::Point { at: at.0, colour, shadow }),
+                LightSpec::Point { at, colour, shadow, fade } => Some(Light::Point { at: at.0, colour, shadow, fade }),
             });
         }
         lights

@@ -124,6 +124,11 @@ fn convert(value: &DeValue<'_>) -> Value {
     }
 }
 
+/// A number as TOML has it: with a point where it is whole.
+pub(super) fn float(x: f64) -> String {
+    format!("{x:?}")
+}
+
 /// Takes every span out: this did not come from the scene's text.
 fn without_spans(mut value: Value) -> Value {
     let entries: Vec<&mut Entry> = match &mut value {
