@@ -9,11 +9,19 @@ use std::process::{Command, Output};
 use support::{lichtenberg, root, run_in, succeed_in, text};
 
 /// Scenes whose small pictures are kept in `renders/golden/`, each with what its picture shows.
-const GOLDENS: [(&str, &str); 5] = [
+const GOLDENS: [(&str, &str); 7] = [
     ("bonsai", "a tree with moss, its mesh of a pot on a round table, two lights: soft shadows meet the table"),
     ("cactus", "three thick arms in warm light with a highlight, and their shadow to the right"),
     ("elm", "a bare elm with bark, its crown a fine net, and a soft shadow of it on the ground"),
     ("grove", "eight elms against a photographed sunrise, their shadows towards us"),
+    (
+        "storm",
+        "a white stroke from the top right of the middle to a tenth above the bottom, forks pointing down, on near black",
+    ),
+    (
+        "papers/2008-fig12",
+        "a tower at dusk struck by a forked bolt, the sky about it brighter, the rocket before it untouched",
+    ),
     ("papers/2008-fig05", "four clay bushes in a row, the last an antler, each with its own outline"),
 ];
 

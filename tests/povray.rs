@@ -43,7 +43,7 @@ fn every_scene_renders_without_a_warning() {
         let path = folder.path().join(text(&output.stdout).trim());
         let picture = decode_png(&fs::read(&path).unwrap()).unwrap();
         assert_eq!((picture.width, picture.height), (160, 120));
-        assert!(covered(&picture) > 0.02, "{name} is blank");
+        assert!(covered(&picture) > 0.005, "{name} is blank");
     }
 }
 

@@ -1,9 +1,11 @@
 //! The command line as it is typed.
 
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
+use super::place::{Place, parse_place};
 use crate::compare::Metric;
 use crate::grow::MarkKind;
 use crate::scene::Override;
@@ -31,6 +33,8 @@ pub enum Command {
     Render(RenderArgs),
     /// Write scenes for other programs
     Export(ExportArgs),
+    /// Strike lightning over a photograph, or over a sequence of them
+    Strike(StrikeArgs),
     /// Tell whether pictures have changed: exit 0 the same, 1 different, 2 not comparable
     Compare(CompareArgs),
     /// List the embedded scenes
@@ -67,6 +71,9 @@ pub struct SceneArgs {
     /// Several values of one thing, as in space.air.weights.alpha=0.3,1,3
     #[arg(long, value_name = "PATH=A,B,...", value_parser = parse_sweep)]
     pub sweep: Vec<Sweep>,
+    /// Frames of the scene's animation: 1-48, or one
+    #[arg(long, value_name = "A-B", value_parser = parse_frames)]
+    pub frames: Option<RangeInclusive<u32>>,
     /// Size of the picture in pixels, in place of the scene's own
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
@@ -119,7 +126,7 @@ pub struct RenderArgs {
     #[arg(long)]
     pub skip_existing: bool,
     /// Render again whenever the scene's files change, coarse first, until interrupted
-    #[arg(long, conflicts_with_all = ["sheet", "skip_existing", "seeds", "sweep"])]
+    #[arg(long, conflicts_with_all = ["sheet", "skip_existing", "seeds", "sweep", "frames"])]
     pub watch: bool,
 }
 
@@ -148,6 +155,93 @@ pub struct ExportArgs {
     /// Leave out exports that are there already
     #[arg(long)]
     pub skip_existing: bool,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct StrikeArgs {
+    /// The photograph: JPEG, PNG, TIFF, WebP or OpenEXR; plate.####.exr with --frames
+    pub plate: PathBuf,
+    /// Where it strikes: 2210,640px, 50%,30%, or fractions of width and height; several for several strokes, each from
+    /// whichever start is cheapest
+    #[arg(long, value_name = "X,Y", value_parser = parse_place, required_unless_present = "track")]
+    pub to: Vec<Place>,
+    /// Where it comes from; by default above the top edge, a little aside of each --to
+    #[arg(long, value_name = "X,Y", value_parser = parse_place)]
+    pub from: Vec<Place>,
+    /// The corner that places count from
+    #[arg(long, value_enum, default_value = "top-left")]
+    pub origin: Origin,
+    /// The scene that strikes: one with a [view] and a step `bolt` with endpoints `target`, as storm and night-bolt are
+    #[arg(long, value_name = "SCENE", default_value = "storm")]
+    pub scene: String,
+    /// Change a value of the scene, as in object.bolt.glow.halo.strength=0.3
+    #[arg(long, value_name = "PATH=VALUE", value_parser = parse_override)]
+    pub set: Vec<Override>,
+    /// Strength of the light in stops, in place of the scene's own
+    #[arg(long, value_name = "EV", allow_negative_numbers = true)]
+    pub exposure: Option<f64>,
+    /// Seed of all random numbers, in place of the scene's own
+    #[arg(long, value_name = "N", conflicts_with = "seeds")]
+    pub seed: Option<u64>,
+    /// Several seeds, candidates to choose from: 1-36, or 1,5,9
+    #[arg(long, value_name = "LIST", value_parser = parse_seeds, conflicts_with = "frames")]
+    pub seeds: Option<Seeds>,
+    /// A picture as large as the photograph, white where the foreground hides the stroke
+    #[arg(long, value_name = "FILE")]
+    pub matte: Option<PathBuf>,
+    /// Height where strokes end at the latest, as the second of a place
+    #[arg(long, value_name = "Y")]
+    pub horizon: Option<String>,
+    /// Colours of a linear photograph, in place of what it says itself
+    #[arg(long, value_enum)]
+    pub plate_space: Option<PlateSpace>,
+    /// Frames of a sequence, the number standing for #### in its name
+    #[arg(long, value_name = "A-B", value_parser = parse_frames)]
+    pub frames: Option<RangeInclusive<u32>>,
+    /// The frame of the strike, frame 1 of the scene's animation; by default the first
+    #[arg(long, value_name = "FRAME", requires = "frames")]
+    pub strike_at: Option<u32>,
+    /// Where it strikes, by frame, in place of --to: a line `frame,x,y` each, x and y as there (1001,576px,397px); the
+    /// whole stroke goes along
+    #[arg(long, value_name = "FILE", requires = "frames", conflicts_with = "to")]
+    pub track: Option<PathBuf>,
+    /// Strength of the light by frame, times the scene's own: a line `frame,value` each
+    #[arg(long, value_name = "FILE", requires = "frames")]
+    pub intensity: Option<PathBuf>,
+    /// The picture: .png as the photograph has it, .exr with passes that add up; several for several formats; {seed} and
+    /// #### stand for the seed and the frame
+    #[arg(long, short, value_name = "FILE")]
+    pub output: Vec<String>,
+    /// A file a pass, in place of one with all of them (.exr)
+    #[arg(long)]
+    pub split: bool,
+    /// Bits a channel of a PNG made from a linear photograph
+    #[arg(long, value_name = "BITS", value_parser = ["8", "16"], default_value = "8")]
+    pub bits: String,
+    /// Make one labelled contact sheet of all candidates
+    #[arg(long, value_name = "FILE")]
+    pub sheet: Option<PathBuf>,
+    /// Most memory to take: bytes, or as 500M, 8G
+    #[arg(long, value_name = "BYTES", value_parser = parse_bytes)]
+    pub max_memory: Option<u64>,
+}
+
+/// A corner of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Origin {
+    /// Places count from the top, as in picture viewers
+    TopLeft,
+    /// Places count from the bottom, as in Nuke
+    BottomLeft,
+}
+
+/// Colours of linear photographs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PlateSpace {
+    /// ITU-R BT.709, the primaries of sRGB
+    Rec709,
+    /// ACEScg (AP1)
+    Acescg,
 }
 
 #[derive(Debug, ClapArgs)]
@@ -340,6 +434,15 @@ fn parse_seeds(text: &str) -> Result<Seeds, String> {
         seeds.extend(first..=last);
     }
     Ok(Seeds(seeds))
+}
+
+fn parse_frames(text: &str) -> Result<RangeInclusive<u32>, String> {
+    let (first, last) = text.split_once('-').unwrap_or((text, text));
+    let frame = |s: &str| s.trim().parse().ok().filter(|frame: &u32| *frame < 1 << 24);
+    match (frame(first), frame(last)) {
+        (Some(first), Some(last)) if first <= last && ((last - first) as usize) < MOST_JOBS => Ok(first..=last),
+        _ => Err(format!("{text:?} are no frames such as 1-48")),
+    }
 }
 
 fn parse_sweep(text: &str) -> Result<Sweep, String> {

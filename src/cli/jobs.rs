@@ -14,6 +14,8 @@ use crate::math::{Progress, unknown};
 use crate::model::Model;
 use crate::scene::{self, Override, Resolved, Source};
 
+/// More pictures than this in one call are a slip of the hand.
+const MOST_JOBS: usize = 100_000;
 /// A scene file may have this many bytes.
 const MOST_BYTES: u64 = 4 << 20;
 
@@ -26,6 +28,8 @@ pub struct Job {
     given: String,
     /// What patterns stand for: `scene`, `seed`, and each swept path, whole and its last key.
     values: BTreeMap<String, String>,
+    /// The frame of an animation.
+    frame: Option<u32>,
     /// What tells this job from the others, in words.
     pub label: String,
 }
@@ -78,11 +82,18 @@ impl Jobs {
             (Some(Seeds(seeds)), _) => seeds.iter().map(|&s| Some(s)).collect(),
             (None, seed) => vec![seed],
         };
+        let frames: Vec<Option<u32>> = match &args.frames {
+            Some(frames) => frames.clone().map(Some).collect(),
+            None => vec![None],
+        };
+        if seeds.len().saturating_mul(frames.len()).saturating_mul(args.scenes.len()) > MOST_JOBS {
+            return Err(Failure::Usage(format!("more than {MOST_JOBS} pictures in one call are a slip of the hand")));
+        }
         let mut list = Vec::new();
         for given in &args.scenes {
             let source = find_scene(given, console)?;
             let stem = Path::new(given).file_stem().map_or("scene".into(), |s| s.to_string_lossy());
-            for &seed in &seeds {
+            for (&seed, &frame) in seeds.iter().flat_map(|seed| frames.iter().map(move |frame| (seed, frame))) {
                 for choice in choices(&args.sweep) {
                     let mut overrides = args.set.clone();
                     let mut values = BTreeMap::from([("scene".to_owned(), stem.to_string())]);
@@ -93,6 +104,10 @@ impl Jobs {
                     }
                     if args.scenes.len() > 1 {
                         label.push(stem.to_string());
+                    }
+                    if let Some(frame) = frame {
+                        values.insert("frame".to_owned(), format!("{frame:04}"));
+                        label.push(format!("frame {frame}"));
                     }
                     if seeds.len() > 1 {
                         label.push(format!("seed {}", seed.unwrap_or_default()));
@@ -110,6 +125,7 @@ impl Jobs {
                         overrides,
                         given: given.clone(),
                         values,
+                        frame,
                         label: label.join(", "),
                     });
                 }
@@ -118,6 +134,9 @@ impl Jobs {
         let mut pattern = "{scene}".to_owned();
         if seeds.len() > 1 {
             pattern.push_str("_{seed}");
+        }
+        if frames.iter().any(Option::is_some) {
+            pattern.push_str("_{frame}");
         }
         for sweep in args.sweep.iter().filter(|sweep| sweep.values.len() > 1) {
             pattern.push_str(&format!("_{{{}}}", sweep.path));
@@ -128,7 +147,7 @@ impl Jobs {
     /// The output of each job by `pattern`.
     pub fn outputs(&self, pattern: &str) -> Result<Vec<String>, Failure> {
         let outputs: Vec<String> =
-            self.list.iter().map(|job| fill(pattern, &job.values)).collect::<Result<_, _>>().map_err(Failure::Usage)?;
+            self.list.iter().map(|job| job.output(pattern)).collect::<Result<_, _>>().map_err(Failure::Usage)?;
         let mut seen = BTreeMap::new();
         for (output, job) in outputs.iter().zip(&self.list) {
             if let Some(other) = seen.insert(output, job) {
@@ -143,11 +162,9 @@ impl Jobs {
 
     /// Reads the scene of `job`; its size is the call's or the scene's own.
     pub fn load(&self, job: &Job) -> Result<Resolved, Failure> {
-        let mut scene = scene::load(&job.source, &job.overrides)?;
-        if let Some(size) = self.size {
-            scene.size = size;
-        }
-        Ok(scene)
+        let size = self.size.map(|[w, h]| Override { path: "size".to_owned(), value: format!("[{w}, {h}]") });
+        let overrides: Vec<Override> = job.overrides.iter().cloned().chain(size).collect();
+        Ok(scene::load_frame(&job.source, &overrides, job.frame.map(f64::from))?)
     }
 
     /// Grows a scene.
@@ -187,6 +204,14 @@ impl Jobs {
 }
 
 impl Job {
+    /// Its output by `pattern`: `{key}` stands for a value, `####` for its frame with as many digits.
+    fn output(&self, pattern: &str) -> Result<String, String> {
+        let name = fill(pattern, &self.values)?;
+        let Some((frame, start)) = self.frame.zip(name.find('#')) else { return Ok(name) };
+        let len = name[start..].chars().take_while(|&c| c == '#').count();
+        Ok(format!("{}{frame:0len$}{}", &name[..start], &name[start + len..]))
+    }
+
     /// The scene's name in messages.
     pub fn name(&self) -> &str {
         &self.source.name

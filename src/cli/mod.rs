@@ -11,11 +11,14 @@ mod jobs;
 mod list;
 mod memory;
 mod new;
+mod place;
 mod preview;
 mod render;
 mod schema;
 mod sheet;
 mod shell;
+mod shone;
+mod strike;
 mod terminal;
 mod watch;
 
@@ -48,6 +51,7 @@ fn run(args: Args, console: &Console) -> Result<(), Failure> {
     match args.command {
         Command::Render(chosen) => render::run(&chosen, threads, console),
         Command::Export(chosen) => export::run(&chosen, console),
+        Command::Strike(chosen) => strike::run(&chosen, console),
         Command::Compare(chosen) => compare::run(&chosen, console),
         Command::List => list::run(console),
         Command::New(chosen) => new::run(&chosen, console),

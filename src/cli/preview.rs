@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::args::{Look, RenderArgs};
 use super::error::Failure;
+use super::shone::{Shone, Writing};
 use crate::files::{Rgba, add_mattes, encode_exr, encode_png, encode_png16, write_whole};
 use crate::math::{Progress, srgb_byte, to_srgb};
 use crate::model::Model;
@@ -23,6 +24,8 @@ const PIXEL_BYTES: [u64; 2] = [64, 640];
 pub enum Drawn {
     /// In linear light, with the names of its objects and limbs.
     Traced(Traced),
+    /// Light over a photograph or over black.
+    Shone(Shone),
     /// As a screen shows it.
     Screen(Rgba),
 }
@@ -86,6 +89,7 @@ impl Drawn {
     pub fn to_screen(&self) -> Rgba {
         match self {
             Self::Screen(picture) => picture.clone(),
+            Self::Shone(shone) => shone.to_screen(),
             Self::Traced(traced) => Rgba {
                 width: traced.picture.width,
                 height: traced.picture.height,
@@ -105,6 +109,9 @@ impl Drawn {
             ("Scene", document.as_str()),
             ("View", how.as_str()),
         ];
+        if let Self::Shone(shone) = self {
+            return shone.write(path, Writing { is_deep: args.bits == "16", split: false }, &texts).map(drop);
+        }
         write_whole(path, |out| match self {
             Self::Traced(traced) if is_exr(path) => {
                 let mut layers = traced.layers();
@@ -138,6 +145,9 @@ pub fn is_exr(path: &Path) -> bool {
 
 /// What shapes a picture besides its scene.
 fn how(args: &RenderArgs, scene: &Resolved) -> serde_json::Value {
+    if scene.view.is_some() && args.with.is_none() && !args.schematic {
+        return serde_json::json!({ "renderer": "glow", "size": scene.size });
+    }
     if args.schematic {
         return serde_json::json!({ "renderer": "schematic", "size": scene.size });
     }

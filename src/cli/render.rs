@@ -12,6 +12,7 @@ use super::export::{read_templates, write_pov};
 use super::jobs::{Job, Jobs};
 use super::preview::{Drawn, is_exr, samples, trace, view};
 use super::sheet::{Tile, write_sheet};
+use super::shone::Shone;
 use super::{terminal, watch};
 use crate::export::{Pov, SvgOptions, identifier, write_svg};
 use crate::files::{Rgba, decode_exr, decode_png, draw_svg};
@@ -101,6 +102,22 @@ pub fn report(path: &Path, job: &Job, scene: &Resolved, begun: Instant, console:
     }
 }
 
+/// Options that say how rays are traced mean nothing where light is drawn.
+fn refuse_tracing(args: &RenderArgs) -> Result<(), Failure> {
+    let given = [
+        ("--samples", args.samples.is_some()),
+        ("--crop", args.crop.is_some()),
+        ("--transparent", args.transparent),
+        ("--look exact", args.look == Look::Exact),
+    ];
+    match given.iter().find(|(_, is_given)| *is_given) {
+        Some((option, _)) => Err(Failure::Usage(format!(
+            "{option} is for scenes that are traced; this one has a [view], where light is drawn"
+        ))),
+        None => Ok(()),
+    }
+}
+
 /// The picture of one scene.
 #[allow(clippy::too_many_arguments, reason = "a scene, how it is drawn, and who listens")]
 pub fn draw(
@@ -121,6 +138,11 @@ pub fn draw(
         write_svg(&model, SvgOptions { size: scene.size }, &mut svg)
             .map_err(|e| Failure::Usage(format!("cannot draw the schematic: {e}")))?;
         return draw_svg(&String::from_utf8_lossy(&svg), &[]).map(Drawn::Screen).map_err(Failure::Usage);
+    }
+    if let Some(view) = scene.view.as_ref().filter(|_| args.with.is_none()) {
+        refuse_tracing(args)?;
+        let model = jobs.model(scene, &[], console, progress)?;
+        return Shone::new(scene, view, &model.strokes, jobs.max_memory(), progress).map(Drawn::Shone);
     }
     // What is wrong with the call is said before long work.
     let view = view(args, scene.size, data, jobs.max_memory())?;

@@ -25,7 +25,7 @@ const POLL: Duration = Duration::from_millis(50);
 /// Files are written in several strokes: a change counts when it has been quiet for so long.
 const QUIET: Duration = Duration::from_millis(80);
 /// What scenes are made of.
-const ENDINGS: [&str; 8] = ["toml", "svg", "png", "jpg", "jpeg", "obj", "exr", "hdr"];
+const ENDINGS: [&str; 11] = ["toml", "svg", "png", "jpg", "jpeg", "tif", "tiff", "webp", "obj", "exr", "hdr"];
 
 /// Renders whenever a file beside the scene changes, until interrupted.
 pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Result<(), Failure> {
@@ -132,7 +132,7 @@ fn once(
         report(output, job, &scene, begun, console);
         Ok(())
     };
-    if args.with.is_some() || args.schematic {
+    if args.with.is_some() || args.schematic || scene.view.is_some() {
         return finish(draw(args, &jobs, job, &scene, false, threads, console, progress)?);
     }
     let fine = view(args, scene.size, is_exr(output), jobs.max_memory())?;

@@ -1,0 +1,336 @@
+//! `strike`: lightning over a photograph, or over a sequence of them.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use rand::RngExt;
+
+use super::args::{Origin, PlateSpace, Seeds, StrikeArgs};
+use super::console::Console;
+use super::error::Failure;
+use super::jobs::find_scene;
+use super::memory;
+use super::place::{Place, Table, parse_place};
+use super::preview::is_exr;
+use super::sheet::{Tile, write_sheet};
+use super::shone::{Shone, Writing};
+use crate::files::{ACESCG, Folder, REC709, decode_grey, decode_plate, set_chromaticities};
+use crate::grow::Placement;
+use crate::math::{DVec2, Stream};
+use crate::model::BEYOND;
+use crate::raster::{Grey, Plate, Samples};
+use crate::scene::{self, Override, Resolved, Source};
+
+/// No photograph has more bytes than this.
+const MOST_BYTES: u64 = 2 << 30;
+
+/// One photograph of a call, and what is made of it.
+struct Shot {
+    frame: Option<u32>,
+    plate: PathBuf,
+    outputs: Vec<PathBuf>,
+}
+
+pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
+    let source = find_scene(&args.scene, console)?;
+    let seeds: Vec<Option<u64>> = match (&args.seeds, args.seed) {
+        (Some(Seeds(seeds)), _) => seeds.iter().map(|&seed| Some(seed)).collect(),
+        (None, seed) => vec![seed],
+    };
+    let shots = shots(args, seeds.len())?;
+    let track = args.track.as_ref().map(|path| Table::read(path, parse_place)).transpose()?;
+    let number = |text: &str| match text.parse::<f64>() {
+        Ok(x) if (0.0..1e6).contains(&x) => Ok(x),
+        _ => Err("an intensity is a number from 0".to_owned()),
+    };
+    let intensity = args.intensity.as_ref().map(|path| Table::read(path, number)).transpose()?;
+    let first = args.frames.as_ref().map_or(0, |frames| *frames.start());
+    let struck_at = args.strike_at.unwrap_or(first);
+    if let Some(frames) = args.frames.as_ref().filter(|frames| !frames.contains(&struck_at)) {
+        console.note(&format!("note: it strikes at frame {struck_at}, outside {}-{}", frames.start(), frames.end()));
+    }
+
+    let mut tiles = Vec::new();
+    for shot in &shots {
+        let plate = Arc::new(read_plate(&shot.plate, args.plate_space)?);
+        let matte = args.matte.as_ref().map(|path| read_matte(path, &plate)).transpose()?.map(Arc::new);
+        for &seed in &seeds {
+            let begun = Instant::now();
+            let what = args.track.as_ref().map_or("--to".to_owned(), |track| format!("a place in {}", track.display()));
+            let to = |place: &Place| place.resolve(plate.frame(), args.origin == Origin::BottomLeft, &what);
+            let targets: Vec<[f64; 2]> = args.to.iter().map(to).collect::<Result<_, _>>()?;
+            // Where the target is tracked the whole stroke goes with it, from where it is when it strikes.
+            let place = |frame: f64| track.as_ref().map(|track: &Table<Place>| track.at(frame, between));
+            let targets = match place(f64::from(struck_at)) {
+                Some(place) => vec![to(&place)?],
+                None => targets,
+            };
+            let shift = match (shot.frame, &track) {
+                (Some(frame), Some(track)) => {
+                    // It may leave the picture.
+                    let now = track.at(f64::from(frame), between);
+                    let now = now.fractions(plate.frame(), args.origin == Origin::BottomLeft);
+                    [now[0] - targets[0][0], now[1] - targets[0][1]]
+                }
+                _ => [0.0; 2],
+            };
+            // Frame 1 of the scene's animation is the strike.
+            let frame = shot.frame.map(|frame| f64::from(frame) - f64::from(struck_at) + 1.0);
+            let mut resolved = load(args, &source, &plate, &targets, seed, frame)?;
+            let Some(view) = &mut resolved.view else {
+                return Err(Failure::Usage(format!(
+                    "{} has no [view]: only such scenes strike photographs",
+                    source.name
+                )));
+            };
+            (view.plate, view.matte) = (Some(Arc::clone(&plate)), matte.clone());
+            let label = seed.map_or_else(|| source.name.clone(), |seed| format!("seed {seed}"));
+            let progress = console.progress(&label);
+            let max_memory = args.max_memory.unwrap_or_else(memory::default_limit);
+            let grown = scene::grow(&resolved, &[], max_memory, &progress)?;
+            let mut strokes = scene::model(&resolved, &grown, resolved.size)?.strokes;
+            let told = match (&intensity, shot.frame) {
+                (Some(table), Some(frame)) => table.at(f64::from(frame), |a, b, t| a + (b - a) * t),
+                _ => 1.0,
+            };
+            let extent = resolved.view.as_ref().map_or([1.0; 2], |view| view.frame.extent);
+            for stroke in &mut strokes {
+                stroke.shift(DVec2::new(shift[0] * extent[0], shift[1] * extent[1]));
+                stroke.glow.intensity *= told;
+                stroke.glow.exposure = args.exposure.unwrap_or(stroke.glow.exposure);
+            }
+            let Some(view) = &resolved.view else { continue };
+            let shone = Shone::new(&resolved, view, &strokes, max_memory, &progress)?;
+            write(args, &shone, &resolved, shot, seed, begun, console)?;
+            if args.sheet.is_some() {
+                tiles.push(Tile { picture: shone.to_screen(), label });
+            }
+        }
+    }
+    console.done();
+    if let Some(sheet) = &args.sheet {
+        write_sheet(sheet, &tiles)?;
+        console.line(&sheet.display().to_string());
+    }
+    Ok(())
+}
+
+fn write(
+    args: &StrikeArgs,
+    shone: &Shone,
+    scene: &Resolved,
+    shot: &Shot,
+    seed: Option<u64>,
+    begun: Instant,
+    console: &Console,
+) -> Result<(), Failure> {
+    let software = format!("lichtenberg {}", env!("CARGO_PKG_VERSION"));
+    let document = scene.document().to_string();
+    let texts = [("Title", scene.title.as_str()), ("Software", &software), ("Scene", &document)];
+    let how = Writing { is_deep: args.bits == "16", split: args.split };
+    for output in &shot.outputs {
+        let name = output.to_string_lossy().replace("{seed}", &scene.seed.to_string());
+        let path = PathBuf::from(name);
+        for file in shone.write(&path, how, &texts)? {
+            if console.json {
+                console.result(&serde_json::json!({
+                    "file": file,
+                    "seed": seed.unwrap_or(scene.seed),
+                    "frame": shot.frame,
+                    "size": scene.size,
+                    "seconds": begun.elapsed().as_secs_f64(),
+                }));
+            } else {
+                console.line(&file.display().to_string());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What is read and what is written, all of it looked up before any of it is made.
+fn shots(args: &StrikeArgs, seeds: usize) -> Result<Vec<Shot>, Failure> {
+    for output in &args.output {
+        let path = Path::new(output);
+        let is_png = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
+        if !is_png && !is_exr(path) {
+            return Err(Failure::Usage(format!("{output} must end in .png or .exr: that is what can be written")));
+        }
+        if args.split && !is_exr(path) {
+            return Err(Failure::Usage(format!("--split writes OpenEXR, not {output}: end it in .exr")));
+        }
+        if seeds > 1 && !output.contains("{seed}") {
+            return Err(Failure::Usage(format!("{output} would be written {seeds} times: put {{seed}} in its name")));
+        }
+    }
+    if args.output.is_empty() && args.sheet.is_none() {
+        return Err(Failure::Usage("say where the picture goes: -o FILE, or --sheet FILE".to_owned()));
+    }
+    let plate = args.plate.to_string_lossy().into_owned();
+    let Some(frames) = &args.frames else {
+        if hashes(&plate).is_some() && !args.plate.exists() {
+            return Err(Failure::Usage(format!("{plate} is a sequence: say which of it, as in --frames 1001-1012")));
+        }
+        let outputs = args.output.iter().map(PathBuf::from).collect();
+        return Ok(vec![Shot { frame: None, plate: args.plate.clone(), outputs }]);
+    };
+    let mut shots = Vec::new();
+    for frame in frames.clone() {
+        let fill = |pattern: &str| -> Result<PathBuf, Failure> {
+            let (start, len) = hashes(pattern)
+                .ok_or_else(|| Failure::Usage(format!("{pattern} needs #### where the frame's number goes")))?;
+            Ok(PathBuf::from(format!("{}{frame:0len$}{}", &pattern[..start], &pattern[start + len..])))
+        };
+        let outputs = args.output.iter().map(|output| fill(output)).collect::<Result<_, _>>()?;
+        shots.push(Shot { frame: Some(frame), plate: fill(&plate)?, outputs });
+    }
+    let missing: Vec<String> =
+        shots.iter().filter(|shot| !shot.plate.is_file()).map(|shot| shot.plate.display().to_string()).collect();
+    if let Some(first) = missing.first() {
+        return Err(Failure::Usage(format!("the sequence has gaps: {first} is missing, {} in all", missing.len())));
+    }
+    Ok(shots)
+}
+
+/// Where a run of `#` starts in a name, and how long it is.
+fn hashes(name: &str) -> Option<(usize, usize)> {
+    // The last run: folders may have others.
+    let end = name.rfind('#')? + 1;
+    let len = name[..end].chars().rev().take_while(|&c| c == '#').count();
+    Some((end - len, len))
+}
+
+fn between(a: Place, b: Place, share: f64) -> Place {
+    a.towards(b, share)
+}
+
+/// The scene with its stroke laid from where to where it is to go.
+fn load(
+    args: &StrikeArgs,
+    source: &Source,
+    plate: &Plate,
+    targets: &[[f64; 2]],
+    seed: Option<u64>,
+    frame: Option<f64>,
+) -> Result<Resolved, Failure> {
+    let [width, height] = plate.frame();
+    let mut overrides = args.set.clone();
+    overrides.push(Override { path: "size".to_owned(), value: format!("[{width}, {height}]") });
+    overrides.extend(seed.map(|seed| Override { path: "seed".to_owned(), value: seed.to_string() }));
+    // What the scene is without the places, for its seed and its unit.
+    let plain = scene::load_frame(source, &overrides, frame)?;
+    let Some(view) = &plain.view else {
+        return Err(Failure::Usage(format!("{} has no [view]: only such scenes strike photographs", source.name)));
+    };
+    let extent = view.frame.extent;
+    let bolt = plain.steps.iter().find(|step| step.name == "bolt");
+    if bolt.is_none_or(|bolt| bolt.endpoints.iter().all(|set| set.name != "target")) {
+        return Err(Failure::Usage(format!(
+            "{} has no step `bolt` with endpoints `target`: that is what is laid over a photograph",
+            source.name
+        )));
+    }
+    let horizon = args.horizon.as_ref().map(|y| {
+        let place = parse_place(&format!("0,{y}")).map_err(Failure::Usage)?;
+        place.resolve(plate.frame(), args.origin == Origin::BottomLeft, "--horizon").map(|[_, y]| y * extent[1])
+    });
+    let horizon = horizon.transpose()?;
+    let low = horizon.unwrap_or(view.frame.horizon);
+    if let Some(under) = targets.iter().find(|target| target[1] * extent[1] < low - 1e-9) {
+        // As they were typed.
+        let told = |up: f64| 100.0 * if args.origin == Origin::BottomLeft { up } else { 1.0 - up };
+        return Err(Failure::Usage(format!(
+            "--to lies below the horizon, where strokes end: it is at {:.0} % of the height, the horizon at {:.0} %",
+            told(under[1]),
+            told(low / extent[1])
+        )));
+    }
+    let from: Vec<[f64; 2]> = if args.from.is_empty() {
+        // From the top edge, a little to one side or the other.
+        let mut random = Stream::new(plain.seed, "strike/from");
+        targets
+            .iter()
+            .map(|target| {
+                let aside: f64 = random.random_range(-0.25..0.25) * extent[1] / extent[0];
+                // From beyond it, so that the stroke does not hang from the frame.
+                [(target[0] + aside).clamp(0.02, 0.98), 1.0 + BEYOND * 0.6]
+            })
+            .collect()
+    } else {
+        let resolve = |place: &Place| place.resolve(plate.frame(), args.origin == Origin::BottomLeft, "--from");
+        args.from.iter().map(resolve).collect::<Result<_, _>>()?
+    };
+    let points = |places: &[[f64; 2]]| {
+        let point = |[x, y]: &[f64; 2]| format!("[{:?}, {:?}]", x * extent[0], y * extent[1]);
+        format!("[{}]", places.iter().map(point).collect::<Vec<_>>().join(", "))
+    };
+    overrides.push(Override { path: "grow.bolt.from".to_owned(), value: format!("{{ at = {} }}", points(&from)) });
+    overrides.push(Override { path: "grow.bolt.to.target.at".to_owned(), value: points(targets) });
+    overrides.extend(horizon.map(|y| Override { path: "view.horizon".to_owned(), value: format!("{y:?}") }));
+    let longest = |target: &[f64; 2]| {
+        let way =
+            |from: &[f64; 2]| DVec2::new((from[0] - target[0]) * extent[0] / extent[1], from[1] - target[1]).length();
+        from.iter().map(way).fold(0.0, f64::max)
+    };
+    let length = targets.iter().map(longest).fold(0.0, f64::max);
+    if length < 0.01 {
+        return Err(Failure::Usage("--from and --to are the same place: a stroke needs some way to go".to_owned()));
+    }
+    let mut scene = scene::load_frame(source, &overrides, frame)?;
+    // Side branches are those of a stroke as long as the picture is high; a shorter one has fewer and shorter ones.
+    let share = length.min(1.0);
+    for near in scene.steps.iter_mut().flat_map(|step| &mut step.endpoints).filter_map(|set| match &mut set.placement {
+        Placement::Near(near) => Some(near),
+        Placement::At(_) | Placement::Random { .. } => None,
+    }) {
+        near.count = (libm::round(f64::from(near.count) * libm::sqrt(share)) as u32).max(1);
+        near.reach *= share;
+    }
+    Ok(scene)
+}
+
+/// A file, or one that the program carries with it: `skies/dusk-launch-pad.jpg`.
+fn read(path: &Path) -> Result<Vec<u8>, Failure> {
+    let embedded = Folder::Embedded(PathBuf::new()).read(&path.to_string_lossy());
+    if let (false, Ok(bytes)) = (path.exists(), embedded) {
+        return Ok(bytes);
+    }
+    let size = fs::metadata(path).map_err(|e| Failure::file("read", path, &e))?.len();
+    if size > MOST_BYTES {
+        return Err(Failure::Usage(format!("{} has {size} bytes, {MOST_BYTES} at most are read", path.display())));
+    }
+    fs::read(path).map_err(|e| Failure::file("read", path, &e))
+}
+
+fn read_plate(path: &Path, space: Option<PlateSpace>) -> Result<Plate, Failure> {
+    let wrong = |error: String| Failure::Usage(format!("cannot strike {}: {error}", path.display()));
+    let mut plate = decode_plate(&read(path)?).map_err(wrong)?;
+    let is_linear = matches!(plate.samples, Samples::Linear(_));
+    match space {
+        Some(_) if !is_linear => {
+            return Err(wrong(
+                "--plate-space is for linear photographs (OpenEXR); others say it in their profile".to_owned(),
+            ));
+        }
+        Some(PlateSpace::Rec709) => set_chromaticities(&mut plate, REC709).map_err(wrong)?,
+        Some(PlateSpace::Acescg) => set_chromaticities(&mut plate, ACESCG).map_err(wrong)?,
+        None => {}
+    }
+    if plate.frame().iter().any(|&side| side < 16) {
+        let [w, h] = plate.frame();
+        return Err(wrong(format!("it has {w} by {h} pixels: too few to see a stroke in, 16 by 16 at least")));
+    }
+    Ok(plate)
+}
+
+fn read_matte(path: &Path, plate: &Plate) -> Result<Grey, Failure> {
+    let wrong = |error: String| Failure::Usage(format!("{} is no matte here: {error}", path.display()));
+    let matte = decode_grey(&read(path)?).map_err(wrong)?;
+    let ([w, h], [width, height]) = (matte.size(), plate.frame());
+    if [w, h] != [width, height] {
+        return Err(wrong(format!("it has {w} by {h} pixels, the photograph {width} by {height}")));
+    }
+    Ok(matte)
+}
