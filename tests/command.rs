@@ -319,3 +319,14 @@ fn the_rest_of_the_command() {
     let output = run_in(at, &["check", "papers/2008-fig02", "--claims", "--set", "space.straight.weights.alpha=3"]);
     assert_eq!(output.status.code(), Some(1));
 }
+
+#[test]
+fn info_measures_what_a_scene_claims() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = succeed_in(folder.path(), &["info", "papers/2008-fig09", "--json"]);
+    let info: serde_json::Value = serde_json::from_str(&said).unwrap();
+    let claims = info["claims"].as_array().unwrap();
+    assert!(claims.len() >= 6 && claims.iter().all(|claim| claim["holds"] == true), "{claims:?}");
+    let dimension = info["steps"][0]["skeleton"]["dimension"].as_f64().unwrap();
+    assert!((0.9..1.6).contains(&dimension), "{dimension}");
+}

@@ -118,6 +118,22 @@ print((read("dark.png") != p).sum(), (read("behind.png") != p).sum(), (lit != p)
     }
 }
 
+/// Every format, made by others, is struck.
+#[test]
+fn formats_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    for (name, kind) in [("a.jpg", "UINT8"), ("b.webp", "UINT8"), ("c.tif", "UINT8"), ("d.png", "UINT16")] {
+        plate(at, name, 64, 48, kind, "");
+        succeed_in(at, &["strike", name, "--to", "50%,60%", "-o", "o.png"]);
+        let said =
+            oiio(at, "o = oiio.ImageBuf('o.png').get_pixels(oiio.FLOAT); print(o.shape[1], o.shape[0], o[0, 0, 2])");
+        let found = numbers(&said);
+        assert_eq!((found[0], found[1]), (64.0, 48.0), "{name}");
+        assert!(found[2] > 0.18, "{name}: {said}");
+    }
+}
+
 #[test]
 fn photographs_are_turned_as_they_say() {
     let folder = tempfile::tempdir().unwrap();

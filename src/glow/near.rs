@@ -120,3 +120,43 @@ impl NearField {
         row(y0) * (1.0 - fy) + row(y0 + 1) * fy
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graph::{Neighbours, Weights};
+    use crate::model::{GlowSpec, NearGlow, Piece, ViewFrame, ViewSpec};
+
+    /// T is a length: at distance T from a straight stroke there is 1/e of its light, whatever the weights are.
+    #[test]
+    fn t_is_in_pixels() {
+        let size = [160, 160];
+        let frame = ViewFrame::new(&ViewSpec { height: Some(160.0), ..ViewSpec::default() }, size);
+        let canvas = Canvas::new(frame, size);
+        for (neighbours, alpha) in [(4, 1.0), (8, 1.0), (4, 3.0), (8, 3.0)] {
+            for t in [8.0, 16.0] {
+                let near = NearGlow {
+                    strength: 1.0,
+                    spread: 1.0,
+                    grain: Some(1.0),
+                    weights: Weights { max: 10.0, alpha },
+                    neighbours: Neighbours::new(neighbours).unwrap(),
+                };
+                let pieces = vec![Piece {
+                    ends: [DVec2::new(80.0, -50.0), DVec2::new(80.0, 210.0)],
+                    radii: [t, t],
+                    is_core: true,
+                }];
+                let stroke = Stroke { name: "s".to_owned(), pieces, glow: GlowSpec { near, ..GlowSpec::default() } };
+                let field = NearField::new(&stroke, true, &canvas, 1, 1 << 30, &Progress::default()).unwrap();
+                let mean = |x: f64| {
+                    let sum: f64 = (0..160).map(|y| f64::from(field.at(DVec2::new(x, f64::from(y))))).sum();
+                    sum / 160.0
+                };
+                let found = (mean(80.0 - t) + mean(80.0 + t)) * 0.5;
+                assert!((found - 0.368).abs() < 0.1, "{neighbours} {alpha} {t}: {found}");
+                assert!(mean(80.0) > 0.99 && mean(80.0 + 2.5 * t) < 0.05);
+            }
+        }
+    }
+}
