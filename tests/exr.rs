@@ -5,7 +5,7 @@ mod support;
 use std::path::Path;
 use std::process::Command;
 
-use support::{succeed_in, text};
+use support::{openimageio, succeed_in, text};
 
 /// Reads every channel with OpenImageIO's Python module, decodes the mattes after the specification with code of its
 /// own, and prints what it found, a fact a line.
@@ -99,15 +99,7 @@ fn render(folder: &Path) -> String {
             "c.exr",
         ],
     );
-    // The interpreter that Debian's module belongs to.
-    let output = Command::new("/usr/bin/python3").current_dir(folder).args(["-c", READER, "c.exr"]).output();
-    let output = output.expect("/usr/bin/python3");
-    assert!(
-        output.status.success(),
-        "OpenImageIO reads it (run ./run-tests, or apt-get install python3-openimageio): {}",
-        text(&output.stderr)
-    );
-    text(&output.stdout)
+    openimageio(folder, READER, &["c.exr"])
 }
 
 #[test]

@@ -4,12 +4,11 @@ mod support;
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use lichtenberg::math::Progress;
 use lichtenberg::scene::grow;
 use lichtenberg::skeleton::apart;
-use support::{embedded, run_in, succeed_in, text};
+use support::{embedded, openimageio, run_in, succeed_in, text};
 
 /// Where Debian's `colord-data` has the profile.
 const ADOBE_RGB: &str = "/usr/share/color/icc/colord/AdobeRGB1998.icc";
@@ -18,15 +17,7 @@ const STORM: &str = "/usr/share/backgrounds/mate/nature/Storm.jpg";
 
 /// Runs a script with OpenImageIO at hand; returns what it printed.
 fn oiio(folder: &Path, script: &str) -> String {
-    let script = format!("import OpenImageIO as oiio, numpy as np, sys\n{script}");
-    let output = Command::new("/usr/bin/python3").current_dir(folder).args(["-c", &script]).output();
-    let output = output.expect("/usr/bin/python3");
-    assert!(
-        output.status.success(),
-        "OpenImageIO (run ./run-tests, or apt-get install python3-openimageio): {}",
-        text(&output.stderr)
-    );
-    text(&output.stdout)
+    openimageio(folder, &format!("import OpenImageIO as oiio, numpy as np, sys\n{script}"), &[])
 }
 
 /// Writes a photograph: a gradient of `width` by `height`, brighter to the right and greener downwards.

@@ -116,7 +116,11 @@ pub fn shine(
         }
         if glow.near.strength * light > 0.0 && !stroke.pieces.is_empty() {
             let field = |is_core: bool| {
-                NearField::new(stroke, is_core, canvas, seed, max_memory, progress).map_err(|error| match error {
+                if stroke.pieces.iter().all(|piece| piece.is_core != is_core) {
+                    return Ok(None);
+                }
+                let field = NearField::new(stroke, is_core, canvas, seed, max_memory, progress);
+                field.map(Some).map_err(|error| match error {
                     Err(PlanError::Cancelled(cancelled)) => ShineError::Cancelled(cancelled),
                     Err(error) => ShineError::Scene { object: stroke.name.clone(), message: error.to_string() },
                     Ok(message) => ShineError::Scene { object: stroke.name.clone(), message },
@@ -125,7 +129,8 @@ pub fn shine(
             let (core, branches) = rayon::join(|| field(true), || field(false));
             let (core, branches) = (core?, branches?);
             let factor = (glow.near.strength * light) as f32;
-            let brightest = |p: DVec2| core.at(p).max(branches.at(p));
+            let at = |field: &Option<NearField>, p: DVec2| field.as_ref().map_or(0.0, |field| field.at(p));
+            let brightest = |p: DVec2| at(&core, p).max(at(&branches, p));
             add(Pass::Glow, each(canvas, |p| brightest(canvas.to_scene(p)) * factor));
         }
         if (has_halo || has_cloud) && light > 0.0 {

@@ -54,6 +54,18 @@ pub fn require_povray() {
     assert!(found.is_ok(), "these tests need povray: run ./run-tests, or apt-get install povray povray-includes");
 }
 
+/// Runs a script in the interpreter that Debian's OpenImageIO belongs to; returns what it printed.
+pub fn openimageio(folder: &Path, script: &str, args: &[&str]) -> String {
+    let output = Command::new("/usr/bin/python3").current_dir(folder).args(["-c", script]).args(args).output();
+    let output = output.expect("/usr/bin/python3");
+    assert!(
+        output.status.success(),
+        "OpenImageIO (run ./run-tests, or apt-get install python3-openimageio): {}",
+        text(&output.stderr)
+    );
+    text(&output.stdout)
+}
+
 /// The root of the repository.
 pub fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
