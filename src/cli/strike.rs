@@ -283,7 +283,7 @@ fn load(
     let share = length.min(1.0);
     for near in scene.steps.iter_mut().flat_map(|step| &mut step.endpoints).filter_map(|set| match &mut set.placement {
         Placement::Near(near) => Some(near),
-        Placement::At(_) | Placement::Random { .. } => None,
+        Placement::At(_) | Placement::Through(_) | Placement::Random { .. } => None,
     }) {
         near.count = (libm::round(f64::from(near.count) * libm::sqrt(share)) as u32).max(1);
         near.reach *= share;

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::decimal::{number, vector};
 use super::identifier::{identifier, plain};
-use super::pov_body::write_body;
+use super::pov_body::{write_body, write_mesh};
 use super::{TemplateError, Templates};
 use crate::math::{Colour, DVec3};
 use crate::model::{BARK, Digits, Dome, FADE, Instance, Light, MOSS, Material, Model, Pattern, Projection, Sky, Wave};
@@ -15,6 +15,8 @@ use crate::raster::Panorama;
 
 /// With more primitives than this the scene takes the objects inline, since `object { Name }` copies a union.
 const MOST_COPIED: usize = 1_000_000;
+/// Digits of a mesh that is posed: it is of unit size.
+const MESH_DIGITS: u32 = 7;
 /// Digits of numbers that are not lengths.
 const PLAIN: Digits = Digits(6);
 /// Lights that stand for the sky in the studio look: more take longer, fewer show as separate shadows.
@@ -70,6 +72,8 @@ struct ObjectValues {
     keyword: &'static str,
     shadow: bool,
     texture: String,
+    /// What is declared once and posed, if it is: its mesh.
+    one: Option<String>,
     body: String,
 }
 
@@ -151,6 +155,11 @@ fn body_mark(i: usize) -> String {
     format!("\u{1}{i}\u{1}")
 }
 
+/// What stands for the mesh of object `i`, declared on its own.
+fn mesh_mark(i: usize) -> String {
+    format!("\u{1}m{i}\u{1}")
+}
+
 impl<'a> Pov<'a> {
     /// `name` gives the files their stem and the declared names their prefix; `size` is the picture's, in pixels.
     #[must_use]
@@ -170,12 +179,13 @@ impl<'a> Pov<'a> {
             foot: vector(to_pov(object.instances[0].at), object.digits),
             places: object.instances[1..].iter().map(|place| placed(place, object.digits)).collect(),
             // A union of fewer than two objects warns.
-            keyword: if object.balls.len() + object.segments.len() < 2 { "object" } else { "union" },
+            keyword: if object.balls.len() + object.segments.len() + object.poses.len() < 2 { "object" } else { "union" },
             shadow: object.shadow,
             texture: match model.materials[object.material].1.pattern {
                 Some(_) => format!("{}_Plain", material_id(object.material)),
                 None => material_id(object.material),
             },
+            one: (!object.poses.is_empty()).then(|| mesh_mark(i)),
             body: body_mark(i),
         });
         let materials = model.materials.iter().enumerate().map(|(i, (_, m))| MaterialValues {
@@ -264,10 +274,15 @@ impl<'a> Pov<'a> {
         for (i, part) in text.split('\u{1}').enumerate() {
             if i % 2 == 0 {
                 out.write_all(part.as_bytes())?;
+            } else if let Some(i) = part.strip_prefix('m') {
+                if let Some(object) = i.parse().ok().and_then(|i: usize| self.model.objects.get(i)) {
+                    write_mesh(&object.mesh, Digits(MESH_DIGITS), &mut out)?;
+                }
             } else if let Some(object) = part.parse().ok().and_then(|i: usize| self.model.objects.get(i)) {
                 let (_, material) = &self.model.materials[object.material];
                 let texture = &self.values.materials[object.material].id;
-                write_body(object, material.pattern.as_ref(), texture, &mut out)?;
+                let one = format!("{}_One", self.values.objects[part.parse::<usize>().unwrap_or(0)].id);
+                write_body(object, material.pattern.as_ref(), texture, &one, &mut out)?;
             }
         }
         Ok(())

@@ -6,17 +6,18 @@ use super::decimal::{number, push_number, push_vector, vector};
 use super::pov::to_pov;
 use crate::geom::frustum;
 use crate::math::DVec3;
-use crate::model::{Digits, Frame, Mesh, Object, Pattern, limb_frames};
+use crate::model::{Digits, Frame, Mesh, Object, Pattern, Pose, limb_frames};
 
 /// The text buffered before it is written.
 const BUFFER: usize = 1 << 16;
 
 /// Writes what `object` is made of. Where its material has a pattern, limbs that are thick enough to show it have
-/// `texture`, laid along them.
+/// `texture`, laid along them. `one` is what its mesh is declared as, where that has poses.
 pub(super) fn write_body(
     object: &Object,
     pattern: Option<&Pattern>,
     texture: &str,
+    one: &str,
     out: &mut impl Write,
 ) -> io::Result<()> {
     let frames = pattern.map(|pattern| (limb_frames(object), pattern.least_radius()));
@@ -61,8 +62,21 @@ pub(super) fn write_body(
         text.extend_from_slice(b"}\n");
         flush_at(&mut text, out, BUFFER)?;
     }
+    for pose in &object.poses {
+        // Columns of the matrix are where the axes go; POV-Ray's are its rows.
+        let axes = [pose.axes.x_axis, pose.axes.z_axis, pose.axes.y_axis].map(to_pov);
+        let unit = Digits(Pose::DIGITS);
+        text.extend_from_slice(format!("object{{{one} matrix<").as_bytes());
+        for x in axes.iter().flat_map(DVec3::to_array) {
+            push_number(&mut text, x, unit, unit.scale());
+            text.push(b',');
+        }
+        let [x, y, z] = to_pov(pose.at).to_array().map(|x| number(x, digits));
+        text.extend_from_slice(format!("{x},{y},{z}>}}\n").as_bytes());
+        flush_at(&mut text, out, BUFFER)?;
+    }
     flush_at(&mut text, out, 1)?;
-    write_mesh(&object.mesh, digits, out)
+    if object.poses.is_empty() { write_mesh(&object.mesh, digits, out) } else { Ok(()) }
 }
 
 /// The matrix that lays a texture along a limb.
@@ -75,7 +89,7 @@ fn matrix(frame: &Frame, digits: Digits) -> String {
     format!("matrix<{}>", numbers.join(","))
 }
 
-fn write_mesh(mesh: &Mesh, digits: Digits, out: &mut impl Write) -> io::Result<()> {
+pub(super) fn write_mesh(mesh: &Mesh, digits: Digits, out: &mut impl Write) -> io::Result<()> {
     if mesh.triangles.is_empty() {
         return Ok(());
     }

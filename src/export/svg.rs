@@ -51,8 +51,12 @@ pub fn write_svg(model: &Model, options: SvgOptions, mut out: impl Write) -> io:
                     write_stroke(disc, disc, &mut out)?;
                 }
             }
-            for corners in &object.mesh.triangles {
-                let [a, b, c] = corners.map(|i| disc(object.mesh.points[i as usize], 0.0));
+            let as_it_is = [None];
+            let posed: Vec<_> = object.poses.iter().map(Some).collect();
+            let poses = if posed.is_empty() { &as_it_is[..] } else { &posed[..] };
+            for (pose, corners) in poses.iter().flat_map(|pose| object.mesh.triangles.iter().map(move |t| (pose, t))) {
+                let point = |i: u32| object.mesh.points[i as usize];
+                let [a, b, c] = corners.map(|i| disc(pose.map_or(point(i), |pose| pose.to_object(point(i))), 0.0));
                 if let (Some(a), Some(b), Some(c)) = (a, b, c) {
                     let [a, b, c] = [a, b, c].map(|disc| disc.centre);
                     writeln!(out, "M{:.2} {:.2}L{:.2} {:.2}L{:.2} {:.2}z", a.x, a.y, b.x, b.y, c.x, c.y)?;

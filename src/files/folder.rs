@@ -81,3 +81,11 @@ pub fn embedded_scenes() -> Vec<(String, &'static str, Folder)> {
     scenes.sort_by(|a, b| a.0.cmp(&b.0));
     scenes
 }
+
+/// The names of the leaf shapes that come with the program.
+#[must_use]
+pub fn leaf_names() -> Vec<String> {
+    let files = SCENES.get_dir("leaves").into_iter().flat_map(Dir::files);
+    let stems = files.filter_map(|file| Some(file.path().file_stem()?.to_str()?.to_owned()));
+    stems.chain(["ball".to_owned()]).collect()
+}

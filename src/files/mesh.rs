@@ -1,9 +1,76 @@
-//! Meshes: Wavefront OBJ in.
+//! Meshes in: Wavefront OBJ, and PLY.
 
 use std::io::Cursor;
 
+use ply_rs_bw::parser::Parser;
+use ply_rs_bw::ply::{DefaultElement, Property};
+
 use crate::math::DVec3;
 use crate::model::Mesh;
+
+/// The triangles in the file called `name`: PLY by its ending, else OBJ.
+///
+/// # Errors
+/// As [`decode_obj`] and [`decode_ply`].
+pub fn decode_mesh(name: &str, bytes: &[u8]) -> Result<Mesh, String> {
+    if name.to_ascii_lowercase().ends_with(".ply") { decode_ply(bytes) } else { decode_obj(bytes) }
+}
+
+/// The triangles in a PLY file (text or binary), as they are: z up. Polygons are cut into fans.
+///
+/// # Errors
+/// A sentence: no PLY, no faces, or faces that name corners that are not there.
+pub fn decode_ply(bytes: &[u8]) -> Result<Mesh, String> {
+    // Rows are read one by one, so that a header that promises too many runs out of bytes instead of memory.
+    let ply = Parser::<DefaultElement>::new().read_ply(&mut Cursor::new(bytes)).map_err(|e| format!("it is no PLY: {e}"))?;
+    let number = |property: Option<&Property>| -> Option<f64> {
+        Some(match *property? {
+            Property::Char(x) => f64::from(x),
+            Property::UChar(x) => f64::from(x),
+            Property::Short(x) => f64::from(x),
+            Property::UShort(x) => f64::from(x),
+            Property::Int(x) => f64::from(x),
+            Property::UInt(x) => f64::from(x),
+            Property::Float(x) => f64::from(x),
+            Property::Double(x) => x,
+            _ => return None,
+        })
+    };
+    let corners = |property: &Property| -> Option<Vec<i64>> {
+        Some(match property {
+            Property::ListChar(list) => list.iter().map(|&i| i64::from(i)).collect(),
+            Property::ListUChar(list) => list.iter().map(|&i| i64::from(i)).collect(),
+            Property::ListShort(list) => list.iter().map(|&i| i64::from(i)).collect(),
+            Property::ListUShort(list) => list.iter().map(|&i| i64::from(i)).collect(),
+            Property::ListInt(list) => list.iter().map(|&i| i64::from(i)).collect(),
+            Property::ListUInt(list) => list.iter().map(|&i| i64::from(i)).collect(),
+            _ => return None,
+        })
+    };
+    let mut mesh = Mesh::default();
+    for row in ply.payload.get("vertex").into_iter().flatten() {
+        let [x, y, z] = ["x", "y", "z"].map(|axis| number(row.get(axis)));
+        let (Some(x), Some(y), Some(z)) = (x, y, z) else { return Err("a vertex has no x, y, z".to_owned()) };
+        mesh.points.push(DVec3::new(x, y, z));
+    }
+    for row in ply.payload.get("face").into_iter().flatten() {
+        let list = ["vertex_indices", "vertex_index"].iter().find_map(|name| row.get(*name)).and_then(corners);
+        let list = list.ok_or("a face has no list of corners")?;
+        if list.iter().any(|&i| i < 0 || i >= mesh.points.len() as i64) {
+            return Err(format!("a face names a corner that is not among the {}", mesh.points.len()));
+        }
+        let list: Vec<u32> = list.into_iter().map(|i| i as u32).collect();
+        let fan = (1..list.len().saturating_sub(1)).map(|i| [list[0], list[i], list[i + 1]]);
+        mesh.triangles.extend(fan.filter(|[a, b, c]| a != b && b != c && c != a));
+    }
+    if mesh.triangles.is_empty() {
+        return Err("it has no faces".to_owned());
+    }
+    if !mesh.points.iter().all(|p| p.is_finite()) {
+        return Err("it has coordinates that are not numbers".to_owned());
+    }
+    Ok(mesh)
+}
 
 /// The triangles in an OBJ file, turned from its y up to z up. Polygons are cut into triangles; where every corner has
 /// a normal the mesh is smooth.
@@ -75,6 +142,18 @@ fn faces_only(text: &str) -> Result<String, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn reads_ply() {
+        let head = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+        let square = format!("{head}0 0 0\n1 0 0\n1 2 0\n0 2 0\n4 0 1 2 3\n");
+        let mesh = decode_ply(square.as_bytes()).unwrap();
+        assert_eq!((mesh.points.len(), mesh.triangles.len()), (4, 2));
+        assert_eq!(mesh.points[2], DVec3::new(1.0, 2.0, 0.0));
+        for bad in [square.replace("2 3\n", "2 9\n"), square.replace("ply", "plx"), head.replace("vertex 4", "vertex 4000000000")] {
+            assert!(decode_ply(bad.as_bytes()).is_err(), "{bad}");
+        }
+    }
 
     #[test]
     fn reads_polygons_upright() {

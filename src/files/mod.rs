@@ -9,13 +9,14 @@ mod mesh;
 mod picture;
 mod plate;
 mod seal;
+mod shape_files;
 mod sketch;
 mod whole;
 
 pub use self::exr::{ExrHead, decode_exr, decode_panorama, encode_exr, encode_exr_rows};
 pub use cryptomatte::add_mattes;
-pub use folder::{Folder, embedded_scenes};
-pub use mesh::decode_obj;
+pub use folder::{Folder, embedded_scenes, leaf_names};
+pub use mesh::{decode_mesh, decode_obj, decode_ply};
 pub use picture::{
     PngHead, Rgba, decode_grey, decode_linear, decode_png, encode_png, encode_png_rows, encode_png16, png_texts, resize,
 };

@@ -16,6 +16,8 @@ const MOST_POINTS: usize = 1_000_000;
 pub struct Page {
     /// Polylines, and whether each is closed.
     pub lines: Vec<(Vec<DVec2>, bool)>,
+    /// The page's width over its height.
+    pub aspect: f64,
 }
 
 impl Page {
@@ -39,7 +41,8 @@ impl Page {
 pub fn decode_sketch(bytes: &[u8]) -> Result<Page, String> {
     let tree =
         Tree::from_data(bytes, &usvg::Options::default()).map_err(|e| format!("it is not an SVG picture: {e}"))?;
-    let mut page = Page::default();
+    let size = tree.size();
+    let mut page = Page { lines: Vec::new(), aspect: f64::from(size.width()) / f64::from(size.height()) };
     let mut points = 0;
     visit(tree.root(), &tree, &mut page, &mut points)?;
     if page.lines.is_empty() {

@@ -2,10 +2,18 @@
 //!
 //! Later stages need never handle a shape with a negative size or a name that leads nowhere.
 
+mod bounds;
+mod closed_mesh;
+mod profile;
 mod round_cone;
 mod shape;
+mod shape_spec;
 mod strokes;
 
+pub use bounds::Bounds;
+pub use closed_mesh::ClosedMesh;
+pub use profile::Profile;
 pub use round_cone::{Frustum, frustum};
-pub use shape::{Bounds, Shape, ShapeSpec, Solid};
+pub use shape::{Shape, Solid};
+pub use shape_spec::{MeshParts, ShapeFiles, ShapeSpec, SketchLines, SolidSpec};
 pub use strokes::Strokes;

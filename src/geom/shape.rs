@@ -1,223 +1,136 @@
 //! Shapes: regions of the plane or of space, made of a few solids.
 
-use std::borrow::Cow;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::Error;
-use serde::{Deserialize, Deserializer};
+use super::{Bounds, ClosedMesh, Profile};
+use crate::math::{DMat3, DVec2, DVec3};
 
-use crate::math::{DVec3, Point, Ref, unknown};
-
-/// A solid, or several combined; `S` is what the combinations are made of.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Solid<S> {
+/// A solid, or several combined, whose names and files are resolved.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Solid {
     /// All between two corners.
     Box {
         /// The corner with the lowest coordinates.
-        min: Point,
+        min: DVec3,
         /// The corner with the highest coordinates.
-        max: Point,
+        max: DVec3,
     },
     /// A ball; in the plane, a disc.
     Sphere {
         /// Its middle.
-        centre: Point,
+        centre: DVec3,
         /// Its radius.
-        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
         radius: f64,
     },
-    /// An ellipsoid along the axes; in the plane, an ellipse.
+    /// An ellipsoid along the axes.
     Ellipsoid {
         /// Its middle.
-        centre: Point,
+        centre: DVec3,
         /// Its half-axes.
-        radii: Point,
+        radii: DVec3,
     },
     /// A cylinder with flat ends.
     Cylinder {
         /// Middle of one end.
-        from: Point,
+        from: DVec3,
         /// Middle of the other end.
-        to: Point,
+        to: DVec3,
         /// Its radius.
-        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
         radius: f64,
     },
     /// A cylinder with round ends.
     Capsule {
         /// Middle of one end's ball.
-        from: Point,
+        from: DVec3,
         /// Middle of the other end's ball.
-        to: Point,
+        to: DVec3,
         /// Its radius.
-        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
         radius: f64,
     },
+    /// All of a ball that lies within an angle of a direction.
+    Sector {
+        /// The ball's middle.
+        at: DVec3,
+        /// The direction, of length 1.
+        along: DVec3,
+        /// The angle, in radians, below pi.
+        angle: f64,
+        /// Its sine and cosine.
+        side: DVec2,
+        /// The ball's radius.
+        radius: f64,
+    },
+    /// An outline turned around an axis.
+    Revolved {
+        /// Where height 0 is on the axis.
+        from: DVec3,
+        /// The axis' direction, of length 1.
+        along: DVec3,
+        /// The outline.
+        profile: Arc<Profile>,
+    },
+    /// The inside of a mesh.
+    Mesh(Arc<ClosedMesh>),
+    /// A shape that is scaled, then turned, then moved.
+    Placed {
+        /// The shape.
+        shape: Shape,
+        /// Its size over what it was.
+        scale: f64,
+        /// A rotation.
+        turn: DMat3,
+        /// How far it is moved.
+        by: DVec3,
+    },
     /// All that is in at least one of these.
-    Union(Vec<S>),
+    Union(Vec<Shape>),
     /// All that is in every one of these.
-    Intersection(Vec<S>),
+    Intersection(Vec<Shape>),
     /// All that is in the first and in no other.
-    Difference(Vec<S>),
-}
-
-/// A shape as a scene writes it: a solid, or the name of one under `[shape]`.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ShapeSpec {
-    /// The name of a shape.
-    Named(Ref<Shape>),
-    /// A shape in place.
-    Inline(Box<Solid<ShapeSpec>>),
-}
-
-impl<'de> Deserialize<'de> for ShapeSpec {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        match serde_json::Value::deserialize(deserializer)? {
-            serde_json::Value::String(name) => Ok(Self::Named(Ref::new(name))),
-            value => Solid::deserialize(value).map(|solid| Self::Inline(Box::new(solid))).map_err(D::Error::custom),
-        }
-    }
-}
-
-impl JsonSchema for ShapeSpec {
-    fn schema_name() -> Cow<'static, str> {
-        "Shape".into()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let solid = generator.subschema_for::<Solid<Self>>();
-        json_schema!({
-            "description": "A shape, or the name of one under `[shape]`.",
-            "anyOf": [{ "type": "string" }, solid]
-        })
-    }
+    Difference(Vec<Shape>),
 }
 
 /// A shape whose names are resolved.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shape(Arc<Solid<Shape>>);
+pub struct Shape(Arc<Solid>);
 
-/// A box around something, along the axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
-    /// The corner with the lowest coordinates.
-    pub min: DVec3,
-    /// The corner with the highest coordinates.
-    pub max: DVec3,
-}
-
-impl Bounds {
-    /// The bounds of nothing: any union with it is the other.
-    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
-
-    /// The least box that holds both.
+impl Shape {
+    /// The shape that is this solid. Lengths are above 0, directions of length 1.
     #[must_use]
-    pub fn union(self, other: Self) -> Self {
-        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    pub fn new(solid: Solid) -> Self {
+        Self(Arc::new(solid))
     }
 
-    /// The box around a ball.
+    /// A cone with flat ends of these radii; `None` where it has no length or width.
     #[must_use]
-    pub fn of_ball(centre: DVec3, radius: f64) -> Self {
-        Self { min: centre - radius, max: centre + radius }
+    pub fn cone(from: DVec3, to: DVec3, [a, b]: [f64; 2]) -> Option<Self> {
+        let along = (to - from).try_normalize()?;
+        let outline = vec![DVec2::new(a, 0.0), DVec2::new(b, (to - from).length())];
+        let profile = Arc::new(Profile::new(outline).ok()?);
+        Some(Self::new(Solid::Revolved { from, along, profile }))
     }
 
-    /// Extent along each axis.
+    /// The shape scaled about the origin, turned by a rotation, and moved.
     #[must_use]
-    pub fn size(&self) -> DVec3 {
-        self.max - self.min
-    }
-
-    /// The middle.
-    #[must_use]
-    pub fn centre(&self) -> DVec3 {
-        (self.min + self.max) * 0.5
-    }
-
-    /// Its eight corners.
-    #[must_use]
-    pub fn corners(&self) -> [DVec3; 8] {
-        std::array::from_fn(|i| {
-            let pick = |bit: usize, axis: usize| if i & bit == 0 { self.min[axis] } else { self.max[axis] };
-            DVec3::new(pick(1, 0), pick(2, 1), pick(4, 2))
+    pub fn placed(&self, scale: f64, turn: DMat3, by: DVec3) -> Self {
+        let point = |p: DVec3| turn * (p * scale) + by;
+        // Solids that stay what they are keep tight boxes.
+        Self::new(match &*self.0 {
+            Solid::Sphere { centre, radius } => Solid::Sphere { centre: point(*centre), radius: radius * scale },
+            Solid::Sector { at, along, angle, side, radius } => {
+                let (at, along) = (point(*at), turn * *along);
+                Solid::Sector { at, along, angle: *angle, side: *side, radius: radius * scale }
+            }
+            Solid::Cylinder { from, to, radius } => {
+                Solid::Cylinder { from: point(*from), to: point(*to), radius: radius * scale }
+            }
+            Solid::Capsule { from, to, radius } => {
+                Solid::Capsule { from: point(*from), to: point(*to), radius: radius * scale }
+            }
+            _ => Solid::Placed { shape: self.clone(), scale, turn, by },
         })
     }
 
-    /// Does it hold nothing?
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        !self.min.cmple(self.max).all()
-    }
-}
-
-impl ShapeSpec {
-    /// A box.
-    #[must_use]
-    pub fn of_box(bounds: Bounds) -> Self {
-        Self::Inline(Box::new(Solid::Box { min: Point(bounds.min), max: Point(bounds.max) }))
-    }
-
-    /// The shape, its names looked up in `named`.
-    ///
-    /// # Errors
-    /// One sentence a mistake: names that lead nowhere or in a circle, sizes that are not positive.
-    pub fn resolve(&self, named: &BTreeMap<String, ShapeSpec>) -> Result<Shape, String> {
-        self.resolve_within(named, &mut Vec::new())
-    }
-
-    fn resolve_within(&self, named: &BTreeMap<String, ShapeSpec>, within: &mut Vec<String>) -> Result<Shape, String> {
-        let solid = match self {
-            Self::Inline(solid) => solid,
-            Self::Named(Ref { name, .. }) => {
-                if within.contains(name) {
-                    return Err(format!("shape `{name}` is made of itself"));
-                }
-                let spec = named.get(name).ok_or_else(|| unknown("shape", name, named.keys()))?;
-                within.push(name.clone());
-                let shape = spec.resolve_within(named, within);
-                within.pop();
-                return shape;
-            }
-        };
-        let mut all = |specs: &[Self]| {
-            if specs.is_empty() {
-                return Err("combine at least one shape".to_owned());
-            }
-            specs.iter().map(|spec| spec.resolve_within(named, within)).collect()
-        };
-        Ok(Shape(Arc::new(match &**solid {
-            Solid::Union(of) => Solid::Union(all(of)?),
-            Solid::Intersection(of) => Solid::Intersection(all(of)?),
-            Solid::Difference(of) => Solid::Difference(all(of)?),
-            Solid::Box { min, max } => {
-                if !min.0.cmple(max.0).all() {
-                    return Err(format!("a box needs min below max, not {} and {}", min.0, max.0));
-                }
-                Solid::Box { min: *min, max: *max }
-            }
-            Solid::Ellipsoid { centre, radii } => {
-                // In the plane the third half-axis is not given, and does not matter.
-                let mut r = radii.0;
-                if r.z == 0.0 {
-                    r.z = 1.0;
-                }
-                if !r.cmpgt(DVec3::ZERO).all() {
-                    return Err(format!("an ellipsoid needs half-axes above 0, not {}", radii.0));
-                }
-                Solid::Ellipsoid { centre: *centre, radii: Point(r) }
-            }
-            &Solid::Sphere { centre, radius } => Solid::Sphere { centre, radius },
-            &Solid::Cylinder { from, to, radius } if from != to => Solid::Cylinder { from, to, radius },
-            &Solid::Cylinder { .. } => return Err("a cylinder needs two different ends".to_owned()),
-            &Solid::Capsule { from, to, radius } => Solid::Capsule { from, to, radius },
-        })))
-    }
-}
-
-impl Shape {
     /// Is `p` inside or on the surface?
     #[must_use]
     pub fn contains(&self, p: DVec3) -> bool {
@@ -228,22 +141,33 @@ impl Shape {
     /// is of first order; for combinations a lower bound.
     #[must_use]
     pub fn distance(&self, p: DVec3) -> f64 {
+        self.signed(p, &|centre, radii, p| {
+            let p = p - centre;
+            let (k0, k1) = ((p / radii).length(), (p / (radii * radii)).length());
+            if k1 == 0.0 { -radii.min_element() } else { k0 * (k0 - 1.0) / k1 }
+        })
+    }
+
+    /// A number with the sign of [`Shape::distance`] that is nowhere larger than the true distance from the surface.
+    #[must_use]
+    pub fn margin(&self, p: DVec3) -> f64 {
+        // |p / radii| changes by no more than 1 / (the least radius) a unit.
+        self.signed(p, &|centre, radii, p| (((p - centre) / radii).length() - 1.0) * radii.min_element())
+    }
+
+    fn signed(&self, p: DVec3, ellipsoid: &dyn Fn(DVec3, DVec3, DVec3) -> f64) -> f64 {
         match &*self.0 {
             Solid::Box { min, max } => {
-                let half = (max.0 - min.0) * 0.5;
-                let q = (p - (min.0 + max.0) * 0.5).abs() - half;
+                let half = (*max - *min) * 0.5;
+                let q = (p - (*min + *max) * 0.5).abs() - half;
                 // A flat box has an inside in its own plane.
                 let inner = if half.z == 0.0 && q.z <= 0.0 { q.x.max(q.y) } else { q.max_element() };
                 q.max(DVec3::ZERO).length() + inner.min(0.0)
             }
-            Solid::Sphere { centre, radius } => (p - centre.0).length() - radius,
-            Solid::Ellipsoid { centre, radii } => {
-                let p = p - centre.0;
-                let (k0, k1) = ((p / radii.0).length(), (p / (radii.0 * radii.0)).length());
-                if k1 == 0.0 { -radii.0.min_element() } else { k0 * (k0 - 1.0) / k1 }
-            }
+            Solid::Sphere { centre, radius } => (p - *centre).length() - radius,
+            Solid::Ellipsoid { centre, radii } => ellipsoid(*centre, *radii, p),
             Solid::Cylinder { from, to, radius } => {
-                let (axis, p) = (to.0 - from.0, p - from.0);
+                let (axis, p) = (*to - *from, p - *from);
                 let length = axis.length();
                 let along = p.dot(axis) / length;
                 let out = libm::sqrt((p.length_squared() - along * along).max(0.0)) - radius;
@@ -251,13 +175,37 @@ impl Shape {
                 let corner = libm::sqrt(out.max(0.0) * out.max(0.0) + past.max(0.0) * past.max(0.0));
                 corner + out.max(past).min(0.0)
             }
-            Solid::Capsule { from, to, radius } => segment_distance(p, from.0, to.0) - radius,
-            Solid::Union(of) => of.iter().map(|s| s.distance(p)).fold(f64::INFINITY, f64::min),
-            Solid::Intersection(of) => of.iter().map(|s| s.distance(p)).fold(f64::NEG_INFINITY, f64::max),
-            Solid::Difference(of) => {
-                let less = of[1..].iter().map(|s| -s.distance(p));
-                less.fold(of[0].distance(p), f64::max)
+            Solid::Capsule { from, to, radius } => segment_distance(p, *from, *to) - radius,
+            Solid::Sector { at, along, side, radius, .. } => {
+                let q = beside(p - *at, *along);
+                let side = *side;
+                // From the flank, a straight line in this half-plane; negative within the angle.
+                let foot = side * q.dot(side).clamp(0.0, *radius);
+                let flank = (q - foot).length();
+                let flank = if q.x * side.y > q.y * side.x { flank } else { -flank };
+                flank.max(q.length() - radius)
             }
+            Solid::Revolved { from, along, profile } => profile.distance(beside(p - *from, *along)),
+            Solid::Mesh(mesh) => mesh.distance(p),
+            Solid::Placed { shape, scale, turn, by } => {
+                shape.signed(turn.transpose() * (p - *by) / *scale, ellipsoid) * scale
+            }
+            Solid::Union(of) => of.iter().map(|s| s.signed(p, ellipsoid)).fold(f64::INFINITY, f64::min),
+            Solid::Intersection(of) => of.iter().map(|s| s.signed(p, ellipsoid)).fold(f64::NEG_INFINITY, f64::max),
+            Solid::Difference(of) => {
+                let less = of[1..].iter().map(|s| -s.signed(p, ellipsoid));
+                less.fold(of[0].signed(p, ellipsoid), f64::max)
+            }
+        }
+    }
+
+    /// How far `p` lies below the outer surface: for a sector below its round part.
+    #[must_use]
+    pub fn depth(&self, p: DVec3) -> f64 {
+        match &*self.0 {
+            Solid::Sector { at, radius, .. } => radius - (p - *at).length(),
+            Solid::Placed { shape, scale, turn, by } => shape.depth(turn.transpose() * (p - *by) / *scale) * scale,
+            _ => -self.distance(p),
         }
     }
 
@@ -266,10 +214,26 @@ impl Shape {
     pub fn bounds(&self) -> Bounds {
         let both = |a: DVec3, b: DVec3, r: f64| Bounds::of_ball(a, r).union(Bounds::of_ball(b, r));
         match &*self.0 {
-            Solid::Box { min, max } => Bounds { min: min.0, max: max.0 },
-            Solid::Sphere { centre, radius } => Bounds::of_ball(centre.0, *radius),
-            Solid::Ellipsoid { centre, radii } => Bounds { min: centre.0 - radii.0, max: centre.0 + radii.0 },
-            Solid::Cylinder { from, to, radius } | Solid::Capsule { from, to, radius } => both(from.0, to.0, *radius),
+            Solid::Box { min, max } => Bounds { min: *min, max: *max },
+            Solid::Sphere { centre, radius } => Bounds::of_ball(*centre, *radius),
+            Solid::Ellipsoid { centre, radii } => Bounds { min: *centre - *radii, max: *centre + *radii },
+            Solid::Cylinder { from, to, radius } | Solid::Capsule { from, to, radius } => both(*from, *to, *radius),
+            Solid::Sector { at, along, angle, radius, .. } => sector_bounds(*along, *angle, *radius).moved(*at),
+            Solid::Revolved { from, along, profile } => {
+                let (across, low, high) = profile.extent();
+                // A disc reaches this far along each axis.
+                let disc = (DVec3::ONE - *along * *along).max(DVec3::ZERO).map(libm::sqrt) * across;
+                let end = |height: f64| {
+                    let at = *from + *along * height;
+                    Bounds { min: at - disc, max: at + disc }
+                };
+                end(low).union(end(high))
+            }
+            Solid::Mesh(mesh) => mesh.bounds(),
+            Solid::Placed { shape, scale, turn, by } => {
+                let corners = shape.bounds().corners().map(|p| *turn * (p * *scale) + *by);
+                corners.into_iter().fold(Bounds::EMPTY, |all, p| all.union(Bounds { min: p, max: p }))
+            }
             Solid::Union(of) => of.iter().map(Self::bounds).fold(Bounds::EMPTY, Bounds::union),
             Solid::Intersection(of) => of[1..]
                 .iter()
@@ -287,9 +251,27 @@ impl Shape {
 
     /// The solid that it is.
     #[must_use]
-    pub fn solid(&self) -> &Solid<Self> {
+    pub fn solid(&self) -> &Solid {
         &self.0
     }
+}
+
+/// The box around a sector with its tip at the origin: where each axis lies within the angle the ball's border is met,
+/// elsewhere the rim is.
+fn sector_bounds(along: DVec3, angle: f64, radius: f64) -> Bounds {
+    let reach = |cos: f64| {
+        let own = libm::acos(cos.clamp(-1.0, 1.0));
+        if own <= angle { radius } else { (radius * libm::cos(own - angle)).max(0.0) }
+    };
+    let high = along.map(reach);
+    let low = along.map(|cos| -reach(-cos));
+    Bounds { min: low, max: high }
+}
+
+/// `p` beside an axis through the origin: its distance from it, and its height along it.
+fn beside(p: DVec3, along: DVec3) -> DVec2 {
+    let height = p.dot(along);
+    DVec2::new((p - along * height).length(), height)
 }
 
 /// Distance of `p` from the segment from `a` to `b`.
@@ -302,11 +284,28 @@ pub(super) fn segment_distance(p: DVec3, a: DVec3, b: DVec3) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
+    use proptest::prelude::*;
+
+    use super::super::shape_spec::{MeshParts, ShapeFiles, ShapeSpec, SketchLines};
     use super::*;
+
+    struct NoFiles;
+
+    impl ShapeFiles for NoFiles {
+        fn sketch_lines(&self, _: &str) -> Result<SketchLines, String> {
+            Err("no files here".to_owned())
+        }
+
+        fn mesh_parts(&self, _: &str) -> Result<MeshParts, String> {
+            Err("no files here".to_owned())
+        }
+    }
 
     fn shape(toml: &str) -> Result<Shape, String> {
         let spec: BTreeMap<String, ShapeSpec> = toml::from_str(toml).map_err(|e| e.to_string())?;
-        spec["s"].resolve(&spec)
+        spec["s"].resolve(&spec, &NoFiles)
     }
 
     #[test]
@@ -318,6 +317,15 @@ mod tests {
             ("s.ellipsoid = { centre = [0, 0, 0], radii = [1, 1, 1] }", 2.0),
             ("s.cylinder = { from = [0, 0, -1], to = [0, 0, 1], radius = 1 }", 2.0),
             ("s.capsule = { from = [0, 0, 0], to = [4, 0, 0], radius = 1 }", -1.0),
+            ("s.cone = { from = [0, 0, -1], to = [0, 0, 1], radii = [1, 1] }", 2.0),
+            ("s.cone = { from = [4, 0, 0], to = [0, 0, 0], radii = [4, 0] }", -1.0),
+            ("s.sector = { at = [1, 0, 0], toward = [1, 0, 0], angle = 90, radius = 4 }", -2.0),
+            ("s.sector = { at = [4, 0, 0], toward = [1, 0, 0], angle = 90, radius = 4 }", 1.0),
+            ("s.sector = { angle = 45, radius = 1 }", (10.0 - 3.0 * std::f64::consts::SQRT_2).sqrt()),
+            (
+                "s.placed = { shape = { sphere = { centre = [0, 0, 1], radius = 1 } }, turn = 90, scale = 2, by = [0, 0, 0] }",
+                -1.0,
+            ),
             (
                 "s.union = [\"t\", { sphere = { centre = [3, 0, 0], radius = 2 } }]\nt.sphere = { centre = [0, 0, 0], radius = 1 }",
                 -2.0,
@@ -328,8 +336,33 @@ mod tests {
             ),
         ] {
             let shape = shape(toml).unwrap();
-            assert!((shape.distance(p) - expected).abs() < 1e-12, "{toml}: {}", shape.distance(p));
+            assert!((shape.distance(p) - expected).abs() < 1e-9, "{toml}: {}", shape.distance(p));
             assert_eq!(shape.contains(p), expected <= 0.0);
+        }
+    }
+
+    proptest! {
+        /// What is inside lies in the box, and no ball of the margin's size crosses the surface.
+        #[test]
+        fn margins_and_bounds_hold(
+            which in 0..7_usize, p in prop::array::uniform3(-3.0..3.0), way in prop::array::uniform3(-1.0..1.0), share in 0.0..0.999
+        ) {
+            let shape = shape([
+                "s.ellipsoid = { centre = [0.2, 0, 0], radii = [2, 0.5, 1] }",
+                "s.cone = { from = [0, 0.3, -1], to = [1, 0, 1], radii = [1.5, 0.3] }",
+                "s.sector = { at = [0, 0, -1], toward = [0.3, 0.2, 1], angle = 40, radius = 2 }",
+                "s.sector = { toward = [-1, 0.2, 0.3], angle = 130, radius = 1.5 }",
+                "s.placed = { shape = { ellipsoid = { centre = [0, 0, 1], radii = [1, 1, 2] } }, turn = 40, about = [1, 1, 0], by = [0.5, 0, 0] }",
+                "s.difference = [{ sphere = { centre = [0, 0, 0], radius = 2 } }, { sector = { angle = 60, radius = 3 } }]",
+                "s.union = [{ cylinder = { from = [0, 0, -2], to = [0, 0, 0], radius = 0.4 } }, { sector = { angle = 90, radius = 2 } }]",
+            ][which]).unwrap();
+            let p = DVec3::from_array(p);
+            let margin = shape.margin(p);
+            prop_assert_eq!(margin <= 0.0, shape.contains(p));
+            let bounds = shape.bounds();
+            prop_assert!(margin > 0.0 || bounds.distance(p) < 1e-9, "{} is inside, but off the box {:?}", p, bounds);
+            let near = p + DVec3::from_array(way).normalize_or(DVec3::X) * (margin.abs() * share);
+            prop_assert_eq!(shape.contains(near), margin <= 0.0, "{} {} {}", p, near, margin);
         }
     }
 
@@ -338,5 +371,6 @@ mod tests {
         assert!(shape("s.union = [\"s\"]").unwrap_err().contains("made of itself"));
         assert!(shape("s.union = [\"crwon\"]\ncrown.union = []").unwrap_err().contains("did you mean `crown`"));
         assert!(shape("s.box = { min = [1, 0], max = [0, 0] }").unwrap_err().contains("min below max"));
+        assert!(shape("s.cone = { from = [1, 0, 0], to = [0, 0, 0], radii = [0, 0] }").unwrap_err().contains("radius"));
     }
 }

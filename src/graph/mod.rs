@@ -1,14 +1,19 @@
-//! Randomly weighted graphs. Weights are computed, never stored.
+//! Randomly weighted graphs: regular lattices, whose weights are computed and never stored, and scattered ones, which
+//! keep theirs.
 //!
 //! Later stages need never handle a weight of zero, a negative one or one that is not finite: every weight is a
-//! fixed-point integer between [`WeightRange::least`] and [`WeightRange::most`].
+//! fixed-point integer; on a lattice it is between [`WeightRange::least`] and [`WeightRange::most`].
 
 mod cost_field;
 mod field;
 mod field_spec;
+mod joined;
 mod lattice;
 mod mask;
 mod neighbours;
+mod poisson;
+mod scatter;
+mod sectors;
 mod weights;
 
 pub use cost_field::{CostField, Measure};
@@ -17,6 +22,9 @@ pub use field_spec::{FieldSpec, FieldUse, HeightEnd, MeasureSpec};
 pub use lattice::{Lattice, LatticeError, Window};
 pub use mask::Mask;
 pub use neighbours::Neighbours;
+pub use poisson::{Region, poisson_points};
+pub use scatter::{Joining, Scatter, ScatterError, ScatterPlan, scatter_bytes, scatter_estimate};
+pub use sectors::Sectors;
 pub use weights::{WeightError, WeightRange, WeightTable, Weights};
 
 /// A node of a graph: a compact name that its graph can turn into a place ([`Graph::cell`]) and neighbours.

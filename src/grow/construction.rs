@@ -3,9 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Source, Step};
+use super::{LatticeSpace, Source, Step};
 use crate::geom::Shape;
-use crate::graph::{Graph, Lattice, Node};
+use crate::graph::{Graph, Lattice, Node, Scatter};
 use crate::math::DVec3;
 use crate::plan::Plan;
 
@@ -47,6 +47,7 @@ pub struct Mark {
 /// A sentence where there is too much to draw.
 pub(super) fn construction<const N: usize>(
     step: &Step,
+    space: &LatticeSpace,
     plan: &Plan<'_, Lattice<N>>,
     endpoints: &[Node],
     show: &[MarkKind],
@@ -59,12 +60,7 @@ pub(super) fn construction<const N: usize>(
             MarkKind::Nodes | MarkKind::Edges => {
                 let is_edges = kind == MarkKind::Edges;
                 let count = if is_edges { lattice.count_edges() } else { lattice.open_nodes() };
-                if count > MOST_DRAWN {
-                    let what = if is_edges { "edges" } else { "nodes" };
-                    return Err(format!(
-                        "{count} {what} are too many to draw ({MOST_DRAWN} at most): use a wider spacing"
-                    ));
-                }
+                few_enough(count, is_edges)?;
                 for node in lattice.nodes() {
                     let from = lattice.position(node);
                     if !is_edges {
@@ -81,12 +77,12 @@ pub(super) fn construction<const N: usize>(
             }
             MarkKind::Endpoints => endpoints.iter().for_each(|&node| add(vec![lattice.position(node)])),
             MarkKind::Shapes => {
-                let mut shapes = vec![&step.space.shape];
-                shapes.extend(&step.space.forbid);
+                let mut shapes = vec![&space.shape];
+                shapes.extend(&space.forbid);
                 shapes.extend(step.endpoints.iter().filter_map(|set| match &set.placement {
-                    super::Placement::Random { inside, .. } => Some(inside),
+                    super::Placement::Random { inside, .. } => inside.as_ref(),
                     super::Placement::Near(near) => Some(&near.inside),
-                    super::Placement::At(_) => None,
+                    super::Placement::At(_) | super::Placement::Through(_) => None,
                 }));
                 if let Source::Inside(shape) = &step.source {
                     shapes.push(shape);
@@ -95,23 +91,68 @@ pub(super) fn construction<const N: usize>(
                     sections(shape, lattice.is_plane()).into_iter().for_each(&mut add);
                 }
             }
-            MarkKind::Contours => cost_contours(step, plan).into_iter().for_each(&mut add),
+            MarkKind::Contours => cost_contours(step, space, plan).into_iter().for_each(&mut add),
         }
     }
     Ok(marks)
 }
 
+/// The marks of a scattered graph; `shapes` are those that its nodes and endpoints were placed in.
+///
+/// # Errors
+/// A sentence where there is too much to draw.
+pub(super) fn scattered_marks(
+    graph: &Scatter,
+    shapes: &[&Shape],
+    endpoints: &[Node],
+    show: &[MarkKind],
+) -> Result<Vec<Mark>, String> {
+    let mut marks = Vec::new();
+    let nodes = || (0..graph.len() as u32).map(Node);
+    for &kind in show {
+        let mut add = |line: Vec<DVec3>| marks.push(Mark { kind, line });
+        match kind {
+            MarkKind::Nodes => {
+                few_enough(graph.len() as u64, false)?;
+                graph.positions().iter().for_each(|&p| add(vec![p]));
+            }
+            MarkKind::Edges => {
+                few_enough(graph.count_edges(), true)?;
+                for node in nodes() {
+                    let ends = graph.edges(node).iter().filter(|(end, _)| node < *end);
+                    ends.for_each(|&(end, _)| add(vec![graph.position(node), graph.position(end)]));
+                }
+            }
+            MarkKind::Endpoints => endpoints.iter().for_each(|&node| add(vec![graph.position(node)])),
+            MarkKind::Shapes => {
+                let is_plane = graph.positions().iter().all(|p| p.z == 0.0);
+                shapes.iter().flat_map(|shape| sections(shape, is_plane)).for_each(add);
+            }
+            MarkKind::Contours => return Err("contours of cost are drawn on lattices only".to_owned()),
+        }
+    }
+    Ok(marks)
+}
+
+fn few_enough(count: u64, is_edges: bool) -> Result<(), String> {
+    let what = if is_edges { "edges" } else { "nodes" };
+    if count > MOST_DRAWN {
+        return Err(format!("{count} {what} are too many to draw ({MOST_DRAWN} at most): use a wider spacing"));
+    }
+    Ok(())
+}
+
 /// Lines of equal cost on the plane, or on the upright plane through the first generator.
-fn cost_contours<const N: usize>(step: &Step, plan: &Plan<'_, Lattice<N>>) -> Vec<Vec<DVec3>> {
+fn cost_contours<const N: usize>(step: &Step, space: &LatticeSpace, plan: &Plan<'_, Lattice<N>>) -> Vec<Vec<DVec3>> {
     let lattice = plan.graph();
     let window = lattice.window();
     let range = lattice.weight_range();
     let root = match &step.source {
         Source::At(points) => points[0],
         Source::Inside(shape) => shape.bounds().centre(),
-        Source::Step(..) => step.space.shape.bounds().centre(),
+        Source::Steps(..) => space.shape.bounds().centre(),
     };
-    let up = step.space.up();
+    let up = space.up();
     let depth = if up == 1 { 0 } else { window.nearest(root).map_or(window.size[1] / 2, |at| at[1]) };
     let size = [window.size[0], window.size[up]];
     let at = |x: u32, y: u32| if up == 1 { [x, y, 0] } else { [x, depth, y] };

@@ -7,7 +7,7 @@ use rand::RngExt;
 use super::Toward;
 use crate::geom::Shape;
 use crate::graph::{Lattice, Node};
-use crate::math::{DVec3, Stream};
+use crate::math::{DVec3, PerRound, Stream};
 use crate::skeleton::Skeleton;
 
 /// Random placement gives up after this many rejections in a row.
@@ -29,12 +29,16 @@ pub struct Endpoints {
 pub enum Placement {
     /// At these points, each carried to the nearest node.
     At(Vec<DVec3>),
+    /// At the last of each list of points, by way of the others.
+    Through(Vec<Vec<DVec3>>),
     /// At random, uniform in a shape (and the space), by rejection (2007, section 3).
     Random {
-        /// How many.
-        count: u32,
-        /// The shape.
-        inside: Shape,
+        /// How many; of a repeated step in each round, around each end.
+        count: PerRound,
+        /// The shape; without it the space's own. In a repeated step it lies in the space around each end.
+        inside: Option<Shape>,
+        /// Greatest depth below the shape's surface.
+        shell: Option<f64>,
         /// Least distance between any two.
         apart: f64,
         /// Name of the random stream.
@@ -76,18 +80,21 @@ impl Placement {
     pub fn count(&self) -> usize {
         match self {
             Self::At(points) => points.len(),
-            Self::Random { count, .. } | Self::Near(Near { count, .. }) => *count as usize,
+            Self::Through(lists) => lists.len(),
+            Self::Random { count, .. } => count.at(0) as usize,
+            Self::Near(Near { count, .. }) => *count as usize,
         }
     }
 
-    /// The nodes, in order, and where exactly they are meant where that is told. A longer random set starts with the
-    /// shorter one. `grown` is what the steps before have grown, by index.
+    /// The nodes of a lattice in the shape `own`, in order, and where exactly they are meant where that is told. A longer
+    /// random set starts with the shorter one. `grown` is what the steps before have grown, by index.
     ///
     /// # Errors
     /// A sentence that says which endpoint cannot be placed.
     pub fn place<const N: usize>(
         &self,
         lattice: &Lattice<N>,
+        own: &Shape,
         seed: u64,
         grown: &[Option<&Skeleton>],
     ) -> Result<Vec<(Node, Option<DVec3>)>, String> {
@@ -101,54 +108,93 @@ impl Placement {
                     Ok((node, Some(p)))
                 })
                 .collect(),
-            Self::Random { count, inside, apart, stream } => {
+            Self::Through(_) => Err("`through` needs scattered nodes (`nodes.scatter`)".to_owned()),
+            Self::Random { count, inside, apart, shell, stream } => {
+                let inside = inside.as_ref().unwrap_or(own);
                 let bounds = inside.bounds();
                 let draw = |stream: &mut Stream| {
                     let [u, v, w]: [f64; 3] = std::array::from_fn(|_| stream.random());
                     let p = bounds.min + bounds.size() * DVec3::new(u, v, w);
                     if lattice.is_plane() { p.with_z(0.0) } else { p }
                 };
-                reject(lattice, seed, *count, inside, *apart, stream, draw)
+                let fits = |p: DVec3| inside.contains(p) && shell.is_none_or(|shell| inside.depth(p) <= shell);
+                reject(lattice, seed, count.at(0) as u32, &fits, *apart, stream, draw)
             }
             Self::Near(near) => {
-                let skeleton = grown[near.step].filter(|s| s.segments().next().is_some());
-                let skeleton = skeleton.ok_or("the step that they are to be near has no limbs")?;
-                let ends: Vec<f64> = skeleton
-                    .segments()
-                    .scan(0.0, |sum, (a, b)| {
-                        *sum += (b.position - a.position).length();
-                        Some(*sum)
-                    })
-                    .collect();
-                let segments: Vec<_> = skeleton.segments().collect();
-                let whole = ends[ends.len() - 1];
-                let way = match (near.toward, skeleton.paths.first()) {
-                    (Toward::Along, Some(path)) => {
-                        skeleton.nodes[path.end as usize].position - skeleton.nodes[0].position
-                    }
-                    _ => DVec3::ZERO,
-                };
-                let down = if lattice.is_plane() { DVec3::NEG_Y } else { DVec3::NEG_Z };
-                let way = way.normalize_or(down);
-                let oldest = skeleton.nodes.iter().map(|n| n.age).fold(f64::MIN_POSITIVE, f64::max);
-                let draw = |stream: &mut Stream| {
-                    let [u, v, w, x, y]: [f64; 5] = std::array::from_fn(|_| stream.random());
-                    let i = ends.partition_point(|&end| end < u * whole).min(segments.len() - 1);
-                    let (from, to) = segments[i];
-                    let start = from.position + (to.position - from.position) * v;
-                    let reach = near.reach * (1.0 - near.shorten * (from.age / oldest));
-                    start
-                        + near.direction(way, w, x, lattice.is_plane())
-                            * reach
-                            * (LEAST_REACH + (1.0 - LEAST_REACH) * y)
-                };
-                reject(lattice, seed, near.count, &near.inside, near.apart, &near.stream, draw)
+                let draw = near.draw(grown, lattice.is_plane())?;
+                let fits = |p: DVec3| near.inside.contains(p);
+                reject(lattice, seed, near.count, &fits, near.apart, &near.stream, draw)
             }
         }
     }
 }
 
 impl Near {
+    /// What draws a place in the vicinity of the step, of what the steps before have grown.
+    fn draw<'a>(
+        &'a self,
+        grown: &[Option<&'a Skeleton>],
+        is_plane: bool,
+    ) -> Result<impl Fn(&mut Stream) -> DVec3 + 'a, String> {
+        let skeleton = grown[self.step].filter(|s| s.segments().next().is_some());
+        let skeleton = skeleton.ok_or("the step that they are to be near has no limbs")?;
+        let ends: Vec<f64> = skeleton
+            .segments()
+            .scan(0.0, |sum, (a, b)| {
+                *sum += (b.position - a.position).length();
+                Some(*sum)
+            })
+            .collect();
+        let segments: Vec<_> = skeleton.segments().collect();
+        let whole = ends[ends.len() - 1];
+        let way = match (self.toward, skeleton.paths.first()) {
+            (Toward::Along, Some(path)) => skeleton.nodes[path.end as usize].position - skeleton.nodes[0].position,
+            _ => DVec3::ZERO,
+        };
+        let down = if is_plane { DVec3::NEG_Y } else { DVec3::NEG_Z };
+        let way = way.normalize_or(down);
+        let oldest = skeleton.nodes.iter().map(|n| n.age).fold(f64::MIN_POSITIVE, f64::max);
+        Ok(move |stream: &mut Stream| {
+            let [u, v, w, x, y]: [f64; 5] = std::array::from_fn(|_| stream.random());
+            let i = ends.partition_point(|&end| end < u * whole).min(segments.len() - 1);
+            let (from, to) = segments[i];
+            let start = from.position + (to.position - from.position) * v;
+            let reach = self.reach * (1.0 - self.shorten * (from.age / oldest));
+            start + self.direction(way, w, x, is_plane) * reach * (LEAST_REACH + (1.0 - LEAST_REACH) * y)
+        })
+    }
+
+    /// Places in the vicinity of the step, apart from each other.
+    ///
+    /// # Errors
+    /// A sentence where there is no room for as many.
+    pub(super) fn draw_places(
+        &self,
+        seed: u64,
+        grown: &[Option<&Skeleton>],
+        is_plane: bool,
+    ) -> Result<Vec<DVec3>, String> {
+        let draw = self.draw(grown, is_plane)?;
+        let mut stream = Stream::new(seed, &format!("endpoints/{}", self.stream));
+        let mut crowd = Crowd::new(self.apart);
+        let mut places = Vec::new();
+        let mut rejections = 0;
+        while places.len() < self.count as usize {
+            let p = draw(&mut stream);
+            if self.inside.contains(p) && crowd.has_room(p) {
+                crowd.add(p);
+                places.push(p);
+                rejections = 0;
+            } else {
+                rejections += 1;
+                if rejections == MOST_REJECTIONS {
+                    return Err(no_room(places.len(), self.count, self.apart));
+                }
+            }
+        }
+        Ok(places)
+    }
+
     /// A direction of length 1 within `180 (1 - lower)` degrees of `way`, even over them, from two numbers of 0 to 1.
     fn direction(&self, way: DVec3, u: f64, v: f64, is_plane: bool) -> DVec3 {
         let half = std::f64::consts::PI * (1.0 - self.lower);
@@ -170,7 +216,7 @@ fn reject<const N: usize>(
     lattice: &Lattice<N>,
     seed: u64,
     count: u32,
-    inside: &Shape,
+    fits: &dyn Fn(DVec3) -> bool,
     apart: f64,
     stream: &str,
     draw: impl Fn(&mut Stream) -> DVec3,
@@ -182,14 +228,11 @@ fn reject<const N: usize>(
     let mut rejections = 0;
     while nodes.len() < count as usize {
         let p = draw(&mut stream);
-        let node = if inside.contains(p) { lattice.nearest(p) } else { None };
+        let node = if fits(p) { lattice.nearest(p) } else { None };
         let Some(node) = node.filter(|node| !taken.contains(node) && placed.has_room(p)) else {
             rejections += 1;
             if rejections == MOST_REJECTIONS {
-                return Err(format!(
-                    "only {} of {count} endpoints could be placed: make `inside` larger, `apart` ({apart}) smaller, or ask for fewer",
-                    nodes.len(),
-                ));
+                return Err(no_room(nodes.len(), count, apart));
             }
             continue;
         };
@@ -201,14 +244,18 @@ fn reject<const N: usize>(
     Ok(nodes)
 }
 
+fn no_room(placed: usize, count: u32, apart: f64) -> String {
+    format!("only {placed} of {count} endpoints could be placed: make `inside` larger, `apart` ({apart}) smaller, or ask for fewer")
+}
+
 /// Points with room around them, in cells as wide as the least distance.
-struct Crowd {
+pub(super) struct Crowd {
     apart: f64,
     cells: HashMap<[i64; 3], Vec<DVec3>>,
 }
 
 impl Crowd {
-    fn new(apart: f64) -> Self {
+    pub fn new(apart: f64) -> Self {
         Self { apart, cells: HashMap::new() }
     }
 
@@ -216,7 +263,7 @@ impl Crowd {
         p.to_array().map(|c| libm::floor(c / self.apart) as i64)
     }
 
-    fn has_room(&self, p: DVec3) -> bool {
+    pub fn has_room(&self, p: DVec3) -> bool {
         if self.apart <= 0.0 {
             return true;
         }
@@ -231,7 +278,7 @@ impl Crowd {
         })
     }
 
-    fn add(&mut self, p: DVec3) {
+    pub fn add(&mut self, p: DVec3) {
         if self.apart > 0.0 {
             self.cells.entry(self.cell(p)).or_default().push(p);
         }

@@ -2,11 +2,17 @@
 //!
 //! Later stages need never handle an endpoint without a path: unreached ones are an error or dropped and counted.
 
+mod choice;
 mod construction;
 mod dbm;
 mod endpoints;
+mod influence;
 mod laplace;
 mod refine;
+mod repeat;
+mod rounds;
+mod scatter_space;
+mod scattered;
 mod space;
 mod spec;
 mod step;
@@ -14,9 +20,16 @@ mod step;
 pub use construction::{Mark, MarkKind};
 pub use dbm::{Dbm, DbmSpec, SIDE, Solver};
 pub use endpoints::{Endpoints, Near, Placement};
+pub use influence::{Canopy, Influence, Rank, sky};
 pub use refine::{Refine, RefineSpec};
-pub use space::Space;
+pub use repeat::{
+    ClustersSpec, Index, InfluenceSpec, LifespanSpec, Loss, Orient, RankSpec, RepeatSpec, ShadeSpec, TurnSpec, Upright,
+};
+pub use rounds::{Repeat, Rounds, Target, Turn};
+pub use scatter_space::{Clusters, ScatterSpace};
+pub use space::{LatticeSpace, Space};
 pub use spec::{
-    EndpointSpec, FromSpec, LatticeSpec, MethodSpec, NearSpec, NodesSpec, SpaceSpec, StepSpec, Toward, Unreached,
+    EndpointSpec, FromSpec, LatticeSpec, MethodSpec, NearSpec, NodesSpec, ScatterSpec, SpaceSpec, StepSpec, Toward,
+    Unreached,
 };
 pub use step::{GrowError, Grown, Method, Part, Source, Step};

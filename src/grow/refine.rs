@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{GrowError, Space};
+use super::{GrowError, LatticeSpace};
 use crate::graph::{Graph, Lattice, Mask, Node, Window};
 use crate::math::{DVec3, Progress};
 use crate::plan::{Goal, PlanError, plan};
@@ -103,7 +103,7 @@ impl Refine {
     pub(super) fn apply<const N: usize>(
         &self,
         mut skeleton: Skeleton,
-        space: &Space,
+        space: &LatticeSpace,
         seed: u64,
         progress: &Progress,
     ) -> Result<Skeleton, GrowError> {
@@ -122,7 +122,7 @@ impl Refine {
 
 struct Round<'a> {
     refine: &'a Refine,
-    space: &'a Space,
+    space: &'a LatticeSpace,
     seed: u64,
     spacing: f64,
     round: u32,
@@ -182,7 +182,15 @@ impl Round<'_> {
             fine.paths.truncate(paths);
         }
         fine.paths =
-            coarse.paths.iter().map(|path| Path { end: renamed[path.end as usize], class: path.class }).collect();
+            coarse
+                .paths
+                .iter()
+                .map(|path| Path {
+                    end: renamed[path.end as usize],
+                    root: renamed[path.root as usize],
+                    class: path.class,
+                })
+                .collect();
         Ok(fine)
     }
 

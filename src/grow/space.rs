@@ -1,7 +1,8 @@
-//! A space whose names and files are resolved, and the lattice that it becomes.
+//! Spaces whose names and files are resolved, and the lattice that one becomes.
 
 use rayon::prelude::*;
 
+use super::ScatterSpace;
 use crate::geom::Shape;
 use crate::graph::{CostField, Lattice, LatticeError, Mask, Neighbours, Weights, Window};
 use crate::math::{DVec3, Stream};
@@ -9,7 +10,42 @@ use crate::plan;
 
 /// Where a step plans its paths.
 #[derive(Clone, Debug)]
-pub struct Space {
+pub enum Space {
+    /// On a regular lattice.
+    Lattice(LatticeSpace),
+    /// Among scattered nodes.
+    Scatter(ScatterSpace),
+}
+
+impl Space {
+    /// Where nodes are.
+    #[must_use]
+    pub fn shape(&self) -> &Shape {
+        match self {
+            Self::Lattice(space) => &space.shape,
+            Self::Scatter(space) => &space.shape,
+        }
+    }
+
+    /// Index of the coordinate that points up: y in the plane, z in space.
+    #[must_use]
+    pub fn up(&self) -> usize {
+        match self {
+            Self::Lattice(space) => space.up(),
+            Self::Scatter(space) => space.up(),
+        }
+    }
+
+    /// The lattice, if it is one.
+    #[must_use]
+    pub fn lattice(&self) -> Option<&LatticeSpace> {
+        if let Self::Lattice(space) = self { Some(space) } else { None }
+    }
+}
+
+/// A regular lattice in a shape.
+#[derive(Clone, Debug)]
+pub struct LatticeSpace {
     /// Where nodes are.
     pub shape: Shape,
     /// Where none are.
@@ -26,7 +62,7 @@ pub struct Space {
     pub stream: String,
 }
 
-impl Space {
+impl LatticeSpace {
     /// The window around `shape`.
     ///
     /// # Errors

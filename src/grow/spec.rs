@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{DbmSpec, RefineSpec, Space, Step};
+use super::{ClustersSpec, DbmSpec, RefineSpec, RepeatSpec, Space, Step};
 use crate::geom::ShapeSpec;
 use crate::graph::{FieldSpec, Neighbours, Weights};
-use crate::math::{Point, Ref};
-use crate::skeleton::Width;
+use crate::math::{PerRound, Point, Ref};
+use crate::skeleton::{FormSpec, Width};
 
 /// A randomly weighted graph in a shape, where paths are planned.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -31,6 +31,10 @@ pub struct SpaceSpec {
     /// Cost fields, by name.
     #[serde(default)]
     pub field: BTreeMap<String, FieldSpec>,
+    /// Volumes around a few points in addition to the shape, each joined to it and never to each other (scattered nodes
+    /// only).
+    #[serde(default)]
+    pub clusters: Option<ClustersSpec>,
     /// The name of the random stream: spaces with the same one have the same random weights. By default the space's
     /// own name.
     #[serde(default)]
@@ -43,6 +47,41 @@ pub struct SpaceSpec {
 pub enum NodesSpec {
     /// A regular lattice.
     Lattice(LatticeSpec),
+    /// Irregular: Poisson-disc nodes, no two nearer than the spacing and with no room for another (Xu and Mould 2012,
+    /// section 3.1).
+    Scatter(ScatterSpec),
+}
+
+impl NodesSpec {
+    /// Do the nodes lie in a plane?
+    #[must_use]
+    pub fn is_plane(&self) -> bool {
+        match self {
+            Self::Lattice(lattice) => lattice.neighbours.dimensions() == 2,
+            Self::Scatter(scatter) => scatter.plane,
+        }
+    }
+}
+
+/// Scattered nodes, joined to the nearest in each sector (a Yao graph) or within a radius.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ScatterSpec {
+    /// Least distance between nodes, in scene units; in the space of a repeated step times its size.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+    pub spacing: f64,
+    /// Sectors of the Yao graph: 6, 8 (the orthants) or 24 in space, 3 to 24 in the plane. By default 8 and 6.
+    #[serde(default)]
+    #[schemars(range(min = 3, max = 24))]
+    pub sectors: Option<u32>,
+    /// In place of the Yao graph: all nodes no farther apart than this are joined, in scene units, also where the space of
+    /// a repeated step is scaled.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+    pub radius: Option<f64>,
+    /// Do they lie in the plane, with y up?
+    #[serde(default)]
+    pub plane: bool,
 }
 
 /// A regular lattice: its nodes are the multiples of the spacing within the shape.
@@ -72,8 +111,16 @@ pub struct StepSpec {
     /// How limbs come about: by least-cost paths, unless said otherwise.
     #[serde(default)]
     pub by: MethodSpec,
+    /// Grow from every end again, round after round, each time in a space of its own: the shape of the space is then
+    /// around the end, with its z along the way the limb came (Xu and Mould 2012, section 3.2).
+    #[serde(default)]
+    pub repeat: Option<RepeatSpec>,
     /// Radii along the paths; limbs that start on another step are nowhere wider than that is there.
     pub width: Width,
+    /// Natural limbs, for widths by `length` and `pipe`: what belongs together becomes one limb, kinks become curves,
+    /// forks blend. Steps that take their width from the step they grow from take this from it too.
+    #[serde(default)]
+    pub form: Option<FormSpec>,
     /// What it costs to go along the step that this one grows from, over what it costs elsewhere: at 0 branches leave at
     /// right angles, at 0.7 at about half of one.
     #[serde(default)]
@@ -102,8 +149,11 @@ pub enum FromSpec {
     Inside(ShapeSpec),
     /// Everywhere on what this step grew: carried to the nearest nodes, and joined where it is.
     All(Ref<Step>),
-    /// At the ends of the paths of this step.
+    /// At the ends of the paths of this step; of a repeated one at those from which it did not grow on.
     Ends(Ref<Step>),
+    /// At the ends of all paths of these steps, of every round (2012, Table 2: "at the final level around the endpoints
+    /// from all previous levels").
+    EveryEnd(#[schemars(length(min = 1))] Vec<Ref<Step>>),
 }
 
 /// How limbs come about.
@@ -150,17 +200,22 @@ pub enum Toward {
     Along,
 }
 
-/// A set of endpoints: exactly one of `count`, `at` and `sketch`. Adding to `count` keeps those already placed.
+/// A set of endpoints: exactly one of `count`, `at`, `through` and `sketch`. Adding to `count` keeps those already placed.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EndpointSpec {
-    /// How many to place at random.
+    /// How many to place at random, 1 to 1,000,000; in a repeated step around each end, and 0 in rounds that have none.
     #[serde(default)]
-    #[schemars(range(min = 1, max = 1_000_000))]
-    pub count: Option<u32>,
-    /// Where to place them at random; by default anywhere in the space.
+    pub count: Option<PerRound>,
+    /// Where to place them at random; by default anywhere in the space. In a repeated step it lies in the space around
+    /// each end.
     #[serde(default)]
     pub inside: Option<ShapeSpec>,
+    /// Only those at random no deeper than this below the surface of `inside` (of a sector: its round part): the shell of
+    /// thickness d_e (2012, Figs. 10 and 11).
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+    pub shell: Option<f64>,
     /// Place those at random in the vicinity of a step, which has then grown before.
     #[serde(default)]
     pub near: Option<NearSpec>,
@@ -171,6 +226,10 @@ pub struct EndpointSpec {
     /// Endpoints by hand.
     #[serde(default)]
     pub at: Option<Vec<Point>>,
+    /// Endpoints by hand, each reached through other places in turn: lists of points, the last of which is the endpoint
+    /// (scattered nodes only).
+    #[serde(default)]
+    pub through: Option<Vec<Vec<Point>>>,
     /// Endpoints from an SVG file, its page stretched over the space's shape: the middle of each closed outline and
     /// the end of each open stroke.
     #[serde(default)]

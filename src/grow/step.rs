@@ -3,12 +3,12 @@
 use std::collections::HashMap;
 
 use super::construction::{Mark, MarkKind, construction};
-use super::{Dbm, Endpoints, Near, Placement, Refine, SIDE, Solver, Space, Unreached};
+use super::{Dbm, Endpoints, LatticeSpace, Near, Placement, Refine, Repeat, SIDE, Solver, Space, Unreached};
 use crate::geom::Shape;
 use crate::graph::{Graph, Lattice, LatticeError, Node};
 use crate::math::{Cancelled, DVec3, Progress};
 use crate::plan::{Goal, Plan, PlanError, mean_cost, plan, plan_delayed};
-use crate::skeleton::{Skeleton, SkeletonNode, Width, bend, smooth};
+use crate::skeleton::{Form, Skeleton, SkeletonNode, Width, bend, smooth};
 
 /// A step whose names and files are resolved.
 #[derive(Clone, Debug)]
@@ -27,8 +27,12 @@ pub struct Step {
     pub classes: Vec<String>,
     /// How limbs come about.
     pub method: Method,
+    /// How it is repeated, around every end.
+    pub repeat: Option<Repeat>,
     /// Radii.
     pub width: Width,
+    /// Natural limbs.
+    pub form: Option<Form>,
     /// What it costs to go along the step that this one grows from, over what it costs elsewhere.
     pub along: f64,
     /// How paths are planned again.
@@ -46,8 +50,8 @@ pub enum Source {
     At(Vec<DVec3>),
     /// All nodes in a shape.
     Inside(Shape),
-    /// What the step with this index has grown.
-    Step(usize, Part),
+    /// What the steps with these indices have grown.
+    Steps(Vec<usize>, Part),
 }
 
 /// Which part of a step others grow from.
@@ -55,8 +59,10 @@ pub enum Source {
 pub enum Part {
     /// All of it.
     All,
-    /// The ends of its paths.
+    /// The ends of its paths, but for those that grew on.
     Ends,
+    /// The ends of all its paths, of every round.
+    EveryEnd,
 }
 
 /// How limbs come about.
@@ -78,6 +84,8 @@ pub struct Grown {
     pub name: String,
     /// The union of its paths, with radii.
     pub skeleton: Skeleton,
+    /// The level of its first round, counted through all steps before.
+    pub first_level: u16,
     /// Nodes of the graph.
     pub nodes: u64,
     /// Edges of the graph, each counted once.
@@ -114,26 +122,37 @@ impl Step {
     #[must_use]
     pub fn bytes_needed(&self) -> u64 {
         let paths: u64 = self.endpoints.iter().map(|set| set.placement.count() as u64).sum();
-        let across: u64 = self.space.window.size.iter().map(|&s| u64::from(s)).sum();
-        // Paths share most of their nodes; they can never have more than the lattice has.
-        let skeleton = paths.saturating_mul(across).min(self.space.window.nodes()) * NODE_BYTES;
-        self.space.bytes_needed().saturating_add(skeleton)
+        match &self.space {
+            Space::Scatter(space) => {
+                // Each thread has a graph of a repeated step.
+                let graphs = if self.repeat.is_some() { rayon::current_num_threads() as u64 } else { 1 };
+                space.bytes_needed().saturating_mul(graphs)
+            }
+            Space::Lattice(space) => {
+                let across: u64 = space.window.size.iter().map(|&s| u64::from(s)).sum();
+                // Paths share most of their nodes; they can never have more than the lattice has.
+                let skeleton = paths.saturating_mul(across).min(space.window.nodes()) * NODE_BYTES;
+                space.bytes_needed().saturating_add(skeleton)
+            }
+        }
     }
 
     /// The steps that must have grown before, by index.
     pub fn after(&self) -> impl Iterator<Item = usize> + '_ {
-        let from = match self.source {
-            Source::Step(step, _) => Some(step),
-            Source::At(_) | Source::Inside(_) => None,
-        };
         let near = |set: &Endpoints| match &set.placement {
             Placement::Near(Near { step, .. }) => Some(*step),
-            Placement::At(_) | Placement::Random { .. } => None,
+            Placement::At(_) | Placement::Through(_) | Placement::Random { .. } => None,
         };
-        from.into_iter().chain(self.endpoints.iter().filter_map(near))
+        self.sources().iter().copied().chain(self.endpoints.iter().filter_map(near))
     }
 
-    /// Grows the step in the scene with this seed. `grown` has what the steps before it have grown, by index; `show`
+    /// The steps that this one grows from.
+    #[must_use]
+    pub fn sources(&self) -> &[usize] {
+        if let Source::Steps(steps, _) = &self.source { steps } else { &[] }
+    }
+
+    /// Grows the step, which is not repeated, in the scene with this seed. `grown` has what the steps before it have grown, by index; `show`
     /// lists what construction drawings need.
     ///
     /// # Errors
@@ -146,17 +165,22 @@ impl Step {
         show: &[MarkKind],
         progress: &Progress,
     ) -> Result<Grown, GrowError> {
-        match self.space.neighbours.count() {
-            4 => self.grow_in::<4>(seed, grown, show, progress),
-            8 => self.grow_in::<8>(seed, grown, show, progress),
-            6 => self.grow_in::<6>(seed, grown, show, progress),
-            18 => self.grow_in::<18>(seed, grown, show, progress),
-            _ => self.grow_in::<26>(seed, grown, show, progress),
+        let space = match &self.space {
+            Space::Scatter(space) => return self.grow_scattered(space, seed, grown, show, progress),
+            Space::Lattice(space) => space,
+        };
+        match space.neighbours.count() {
+            4 => self.grow_in::<4>(space, seed, grown, show, progress),
+            8 => self.grow_in::<8>(space, seed, grown, show, progress),
+            6 => self.grow_in::<6>(space, seed, grown, show, progress),
+            18 => self.grow_in::<18>(space, seed, grown, show, progress),
+            _ => self.grow_in::<26>(space, seed, grown, show, progress),
         }
     }
 
     fn grow_in<const N: usize>(
         &self,
+        space: &LatticeSpace,
         seed: u64,
         grown: &[Option<&Skeleton>],
         show: &[MarkKind],
@@ -164,14 +188,14 @@ impl Step {
     ) -> Result<Grown, GrowError> {
         let in_space =
             |key: &str, message: String| GrowError::Scene { place: format!("space.{}{key}", self.space_name), message };
-        let lattice: Lattice<N> = self.space.lattice(seed).map_err(|error| {
+        let lattice: Lattice<N> = space.lattice(seed).map_err(|error| {
             let key = if matches!(error, LatticeError::Weights(_)) { ".weights" } else { ".nodes" };
             in_space(key, error.to_string())
         })?;
         let starts = self.starts(&lattice, grown)?;
         let mut wanted: Vec<Wanted<'_>> = Vec::new();
         for set in &self.endpoints {
-            let nodes = set.placement.place(&lattice, seed, grown).map_err(|message| GrowError::Scene {
+            let nodes = set.placement.place(&lattice, &space.shape, seed, grown).map_err(|message| GrowError::Scene {
                 place: format!("grow.{}.to.{}", self.name, set.name),
                 message,
             })?;
@@ -182,7 +206,7 @@ impl Step {
         let (skeleton, dropped, settled, marks) = match self.method {
             Method::Paths => {
                 let goal = if show.contains(&MarkKind::Contours) { Goal::Everything } else { Goal::Nodes(&nodes) };
-                let later = self.delays(&lattice, &starts, grown);
+                let later = self.delays(space, &lattice, &starts, grown);
                 let plan = if later.is_empty() {
                     plan(&lattice, &generators, goal, progress)
                 } else {
@@ -193,7 +217,7 @@ impl Step {
                     PlanError::TooWide { .. } => in_space(".weights", error.to_string()),
                 })?;
                 let (skeleton, dropped) = self.paths(&plan, &starts, &wanted)?;
-                let marks = construction(self, &plan, &nodes, show).map_err(|message| in_space(".nodes", message))?;
+                let marks = construction(self, space, &plan, &nodes, show).map_err(|message| in_space(".nodes", message))?;
                 (skeleton, dropped, plan.settled() as u64, marks)
             }
             Method::Dbm(dbm) => {
@@ -213,7 +237,7 @@ impl Step {
             }
         };
         let skeleton = match &self.refine {
-            Some(refine) => refine.apply::<N>(skeleton, &self.space, seed, progress).map_err(|error| match error {
+            Some(refine) => refine.apply::<N>(skeleton, space, seed, progress).map_err(|error| match error {
                 GrowError::Scene { message, .. } => in_space(".weights", message),
                 cancelled @ GrowError::Cancelled(_) => cancelled,
             })?,
@@ -221,6 +245,7 @@ impl Step {
         };
         Ok(Grown {
             name: self.name.clone(),
+            first_level: 0,
             nodes: lattice.open_nodes(),
             edges: lattice.count_edges(),
             settled,
@@ -251,18 +276,17 @@ impl Step {
             Source::Inside(shape) => {
                 lattice.nodes().filter(|&n| shape.contains(lattice.position(n))).map(|n| (n, None)).collect()
             }
-            Source::Step(step, part) => {
-                let skeleton = grown[*step].ok_or_else(|| wrong("the step has not grown"))?;
-                let places: Vec<DVec3> = match part {
-                    Part::All => skeleton.nodes.iter().map(|n| n.position).collect(),
-                    Part::Ends => skeleton.paths.iter().map(|p| skeleton.nodes[p.end as usize].position).collect(),
-                };
+            Source::Steps(steps, part) => {
+                let mut places = Vec::new();
+                for &step in steps {
+                    places.extend(grown[step].ok_or_else(|| wrong("the step has not grown"))?.places(*part));
+                }
                 places.into_iter().filter_map(|p| lattice.nearest(p).map(|node| (node, Some(p)))).collect()
             }
         };
         if starts.is_empty() {
             return Err(wrong(match self.source {
-                Source::Step(..) => "nothing of that step lies in the space",
+                Source::Steps(..) => "nothing of that step lies in the space",
                 Source::At(_) | Source::Inside(_) => "no node of the space lies in this shape",
             }));
         }
@@ -281,25 +305,38 @@ impl Step {
     /// With what cost each generator starts, where going along the step before costs something.
     fn delays<const N: usize>(
         &self,
+        space: &LatticeSpace,
         lattice: &Lattice<N>,
         starts: &[(Node, Option<DVec3>)],
         grown: &[Option<&Skeleton>],
     ) -> Vec<(Node, u64)> {
-        let Source::Step(step, _) = self.source else { return Vec::new() };
-        let Some(skeleton) = grown[step].filter(|_| self.along > 0.0) else { return Vec::new() };
-        let mut along: HashMap<[u64; 3], f64> = HashMap::new();
-        let mut lengths: Vec<f64> = Vec::with_capacity(skeleton.nodes.len());
-        for node in &skeleton.nodes {
-            lengths.push(node.parent.map_or(0.0, |parent| {
-                lengths[parent as usize] + (node.position - skeleton.nodes[parent as usize].position).length()
-            }));
-            along.entry(bits(node.position)).or_insert(lengths[lengths.len() - 1]);
+        let along = self.ways_along(grown);
+        if along.is_empty() {
+            return Vec::new();
         }
         // Weights that a lattice was made of are in range.
-        let mean = mean_cost::<N>(self.space.weights).unwrap_or(0.0);
-        let scale = self.along * mean / self.space.window.spacing * f64::from(1_u32 << lattice.weight_range().fraction);
+        let mean = mean_cost::<N>(space.weights).unwrap_or(0.0);
+        let scale = self.along * mean / space.window.spacing * f64::from(1_u32 << lattice.weight_range().fraction);
         let delay = |p: DVec3| (along.get(&bits(p)).copied().unwrap_or(0.0) * scale) as u64;
         starts.iter().map(|&(node, at)| (node, at.map_or(0, delay))).collect()
+    }
+
+    /// How far each place of the steps that this one grows from is along them; nothing where that costs nothing.
+    pub(super) fn ways_along(&self, grown: &[Option<&Skeleton>]) -> HashMap<[u64; 3], f64> {
+        let mut along: HashMap<[u64; 3], f64> = HashMap::new();
+        if self.along <= 0.0 {
+            return along;
+        }
+        for skeleton in self.sources().iter().filter_map(|&step| grown[step]) {
+            let mut lengths: Vec<f64> = Vec::with_capacity(skeleton.nodes.len());
+            for node in &skeleton.nodes {
+                lengths.push(node.parent.map_or(0.0, |parent| {
+                    lengths[parent as usize] + (node.position - skeleton.nodes[parent as usize].position).length()
+                }));
+                along.entry(bits(node.position)).or_insert(lengths[lengths.len() - 1]);
+            }
+        }
+        along
     }
 
     fn paths<const N: usize>(
@@ -346,7 +383,14 @@ impl Step {
     }
 
     /// Radii, smoothing, ages and branches.
-    fn finish(&self, mut skeleton: Skeleton, grown: &[Option<&Skeleton>]) -> Result<Skeleton, GrowError> {
+    pub(super) fn finish(
+        &self,
+        mut skeleton: Skeleton,
+        grown: &[Option<&Skeleton>],
+    ) -> Result<Skeleton, GrowError> {
+        if self.repeat.is_none() {
+            skeleton.root_paths();
+        }
         self.width
             .apply(&mut skeleton)
             .map_err(|message| GrowError::Scene { place: format!("grow.{}.width", self.name), message })?;
@@ -354,17 +398,37 @@ impl Step {
             smooth(&mut skeleton, self.smooth);
             skeleton = bend(&skeleton);
         }
-        let earlier = match self.source {
-            Source::Step(step, _) => grown[step],
-            Source::At(_) | Source::Inside(_) => None,
-        };
-        let known: HashMap<[u64; 3], &SkeletonNode> =
-            earlier.into_iter().flat_map(|s| &s.nodes).map(|node| (bits(node.position), node)).collect();
-        skeleton.start_from(|root| {
-            known.get(&bits(root.position)).map_or((0.0, f64::INFINITY), |node| (node.age, node.radius))
-        });
+        self.age(&mut skeleton, grown);
         skeleton.number_branches();
         Ok(skeleton)
+    }
+
+    /// Carries on ages, levels and largest radii from the steps that this one grows from.
+    pub(super) fn age(&self, skeleton: &mut Skeleton, grown: &[Option<&Skeleton>]) {
+        let known: HashMap<[u64; 3], &SkeletonNode> = self
+            .sources()
+            .iter()
+            .filter_map(|&step| grown[step])
+            .flat_map(|s| &s.nodes)
+            .map(|node| (bits(node.position), node))
+            .collect();
+        skeleton.start_from(|root| {
+            // Widths along whole plants come later.
+            let widest = |radius: f64| if radius > 0.0 { radius } else { f64::INFINITY };
+            known.get(&bits(root.position)).map_or((0.0, f64::INFINITY), |node| (node.age, widest(node.radius)))
+        });
+    }
+}
+
+impl Skeleton {
+    /// Where a part of it is.
+    pub(super) fn places(&self, part: Part) -> Vec<DVec3> {
+        match part {
+            Part::All => self.nodes.iter().map(|n| n.position).collect(),
+            Part::Ends | Part::EveryEnd => {
+                self.ends(part == Part::EveryEnd).map(|(end, _)| self.nodes[end as usize].position).collect()
+            }
+        }
     }
 }
 

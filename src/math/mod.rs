@@ -4,18 +4,22 @@
 //! Later stages need never handle platform differences: everything here gives the same bits everywhere.
 
 mod name;
+mod per_round;
 mod power;
 mod prefetch;
 mod progress;
 mod random;
+mod rotation;
 mod srgb;
 pub mod tolerance;
 
 pub use glam::{DMat3, DVec2, DVec3};
 
 pub use name::{Colour, Degrees, Point, Ref, unknown};
+pub use per_round::PerRound;
 pub use power::power;
 pub(crate) use prefetch::prefetch;
 pub use progress::{Cancelled, Progress};
 pub use random::{Stream, mix};
+pub use rotation::{frame_along, rotation, turned_toward};
 pub use srgb::{from_srgb, srgb_byte, to_srgb};

@@ -48,6 +48,12 @@ impl Stream {
         Self { key: mix(mix(seed.wrapping_add(GOLDEN)) ^ mix(hash)), next: 0 }
     }
 
+    /// The stream with this index among many that share a name.
+    #[must_use]
+    pub fn nth(&self, index: u64) -> Self {
+        Self { key: mix(self.key ^ mix(index.wrapping_add(GOLDEN))), next: 0 }
+    }
+
     /// What tells this stream from all others.
     #[must_use]
     pub fn key(&self) -> u64 {

@@ -6,6 +6,7 @@
 mod appearance;
 mod camera;
 mod dome;
+mod leaves;
 mod object;
 mod pattern;
 mod skin;
@@ -15,9 +16,10 @@ mod view;
 pub use appearance::{FADE, Ground, GroundSpec, Light, LightSpec, Material, Sky, SkySpec};
 pub use camera::{Camera, CameraSpec, Projected, Projection};
 pub use dome::Dome;
-pub use object::{Ball, Digits, Instance, Mesh, Object};
+pub use leaves::{LeafLight, LeavesSpec, ball_mesh, leaf_mesh};
+pub use object::{Ball, Digits, Instance, Mesh, Object, Pose};
 pub use pattern::{BARK, Frame, MOSS, Pattern, Wave, limb_frames};
-pub use skin::{Skin, SkinError};
+pub use skin::{Skin, SkinError, foot};
 pub use stroke::{CORE, CloudLight, GlowSpec, Halo, NearGlow, Piece, Stroke, shining};
 pub use view::{BEYOND, Frame as ViewFrame, ViewSpec};
 

@@ -1,7 +1,7 @@
 //! Objects: balls and the limbs between them, or a mesh; and where they stand.
 
 use crate::geom::Bounds;
-use crate::math::{DVec3, Degrees};
+use crate::math::{DMat3, DVec3, Degrees};
 
 /// A sphere with what was known of its place in the skeleton.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,6 +77,34 @@ impl Instance {
     }
 }
 
+/// A place within an object where its mesh stands: turned and scaled, then moved. A leaf's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Where its origin is, from the object's foot.
+    pub at: DVec3,
+    /// Its axes there, as long as its scale.
+    pub axes: DMat3,
+}
+
+impl Pose {
+    /// Rounded once, here.
+    #[must_use]
+    pub fn new(at: DVec3, axes: DMat3) -> Self {
+        let unit = Digits(Self::DIGITS);
+        let rounded = [axes.x_axis, axes.y_axis, axes.z_axis].map(|axis| unit.round_point(axis));
+        Self { at, axes: DMat3::from_cols(rounded[0], rounded[1], rounded[2]) }
+    }
+
+    /// Digits behind the point of its axes.
+    pub const DIGITS: u32 = 7;
+
+    /// A point of the object from the mesh's own.
+    #[must_use]
+    pub fn to_object(&self, p: DVec3) -> DVec3 {
+        self.axes * p + self.at
+    }
+}
+
 /// What a scene declares as one thing: balls, and round cones between pairs of them; or a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
@@ -92,6 +120,8 @@ pub struct Object {
     pub segments: Vec<[u32; 2]>,
     /// Triangles.
     pub mesh: Mesh,
+    /// Where the mesh stands within the object; where there are none, once as it is.
+    pub poses: Vec<Pose>,
     /// Digits behind the point of all its numbers.
     pub digits: Digits,
     /// Does it cast shadows?
@@ -104,7 +134,10 @@ impl Object {
         self.instances.iter().flat_map(move |place| {
             let balls = self.balls.iter().map(|b| (b.centre, b.radius));
             let corners = self.mesh.points.iter().map(|&p| (p, 0.0));
-            balls.chain(corners).map(|(p, radius)| (place.to_world(p), radius * place.scale))
+            let corners = corners.take(if self.poses.is_empty() { usize::MAX } else { 0 });
+            // A posed mesh is as wide as its longest axis, about.
+            let posed = self.poses.iter().map(|pose| (pose.at, pose.axes.y_axis.length()));
+            balls.chain(corners).chain(posed).map(|(p, radius)| (place.to_world(p), radius * place.scale))
         })
     }
 
@@ -118,13 +151,15 @@ impl Object {
     #[must_use]
     pub fn height(&self) -> f64 {
         let balls = self.balls.iter().map(|b| b.centre.z + b.radius);
-        balls.chain(self.mesh.points.iter().map(|p| p.z)).fold(0.0, f64::max)
+        let corners = self.mesh.points.iter().map(|p| p.z).take(if self.poses.is_empty() { usize::MAX } else { 0 });
+        let posed = self.poses.iter().map(|pose| pose.at.z);
+        balls.chain(corners).chain(posed).fold(0.0, f64::max)
     }
 
     /// How many spheres, cones and triangles there are, once each.
     #[must_use]
     pub fn primitives(&self) -> usize {
-        self.balls.len() + self.segments.len() + self.mesh.triangles.len()
+        self.balls.len() + self.segments.len() + self.mesh.triangles.len() + self.poses.len()
     }
 }
 

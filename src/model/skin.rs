@@ -1,9 +1,11 @@
 //! Skins: from a skeleton to what is seen.
 
+use std::collections::HashMap;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Ball, Digits, Instance, Mesh, Object, to_world};
+use super::{Ball, Digits, Instance, Mesh, Object, Pose, to_world};
 use crate::math::{DVec3, tolerance::INVISIBLE_RADIUS};
 use crate::skeleton::{Skeleton, overlap};
 
@@ -69,9 +71,86 @@ impl Object {
             balls: Vec::new(),
             segments: Vec::new(),
             mesh,
+            poses: Vec::new(),
             digits,
             shadow: true,
         })
+    }
+}
+
+impl Object {
+    /// An object whose `mesh` stands at `poses`, from a foot at `foot` in the world.
+    ///
+    /// # Errors
+    /// [`SkinError`].
+    pub fn of_poses(
+        name: &str,
+        mesh: &Mesh,
+        poses: Vec<Pose>,
+        foot: DVec3,
+        digits: Digits,
+        material: usize,
+    ) -> Result<Self, SkinError> {
+        if poses.len() > MOST_PRIMITIVES {
+            return Err(SkinError::TooMany(poses.len()));
+        }
+        let unit = Digits(Pose::DIGITS);
+        let mesh = Mesh {
+            points: mesh.points.iter().map(|&p| unit.round_point(p)).collect(),
+            normals: mesh.normals.iter().map(|&n| Digits(6).round_point(n)).collect(),
+            triangles: mesh.triangles.clone(),
+        };
+        Ok(Self {
+            name: name.to_owned(),
+            instances: vec![Instance::at(foot)],
+            material,
+            balls: Vec::new(),
+            segments: Vec::new(),
+            mesh,
+            poses,
+            digits,
+            shadow: true,
+        })
+    }
+}
+
+/// The foot of an object made of `skeletons`: their first root.
+#[must_use]
+pub fn foot(skeletons: &[&Skeleton]) -> Option<DVec3> {
+    skeletons.iter().find_map(|s| s.nodes.first()).map(|node| node.position)
+}
+
+impl Object {
+    /// This object as one for each level of growth, each with the same foot; alone where it has only one level. Limbs that
+    /// go on from another level start with a ball of it.
+    #[must_use]
+    pub fn by_level(self) -> Vec<Self> {
+        let mut levels: Vec<u16> = self.balls.iter().map(|ball| ball.level).collect();
+        levels.sort_unstable();
+        levels.dedup();
+        if levels.len() < 2 {
+            return vec![self];
+        }
+        let of = |level: u16| {
+            let mut renamed: HashMap<u32, u32> = HashMap::new();
+            let mut own = Self { name: format!("{}_level_{level}", self.name), balls: Vec::new(), segments: Vec::new(), ..self.clone() };
+            let mut put = |own: &mut Self, i: u32| {
+                *renamed.entry(i).or_insert_with(|| {
+                    own.balls.push(self.balls[i as usize]);
+                    own.balls.len() as u32 - 1
+                })
+            };
+            for &[a, b] in self.segments.iter().filter(|[_, b]| self.balls[*b as usize].level == level) {
+                let segment = [put(&mut own, a), put(&mut own, b)];
+                own.segments.push(segment);
+            }
+            // Balls that no segment shows are shown alone.
+            for (i, _) in (0..).zip(&self.balls).filter(|(_, ball)| ball.level == level) {
+                put(&mut own, i);
+            }
+            own
+        };
+        levels.into_iter().map(of).collect()
     }
 }
 
@@ -88,7 +167,7 @@ impl Skin {
         offset: DVec3,
         material: usize,
     ) -> Result<Object, SkinError> {
-        let root = skeletons.iter().find_map(|s| s.nodes.first()).ok_or(SkinError::Empty)?.position;
+        let root = foot(skeletons).ok_or(SkinError::Empty)?;
         let dense;
         let skeletons: Vec<&Skeleton> = match self {
             Self::Cones => skeletons.to_vec(),
@@ -118,6 +197,7 @@ impl Skin {
             balls: Vec::with_capacity(count),
             segments: Vec::new(),
             mesh: Mesh::default(),
+            poses: Vec::new(),
             digits,
             shadow: true,
         };

@@ -7,6 +7,7 @@ mod buckets;
 mod cells;
 mod front;
 mod mean;
+mod routes;
 mod search;
 #[cfg(test)]
 mod search_tests;
@@ -14,5 +15,6 @@ mod shared;
 mod tree;
 
 pub use mean::mean_cost;
+pub use routes::{Routes, routes};
 pub use search::{Goal, PlanError, bytes_needed, plan, plan_delayed};
 pub use tree::Plan;

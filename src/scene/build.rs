@@ -1,12 +1,16 @@
 //! The way through the house: steps are grown, skeletons dressed, the model put together.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 
 use super::{LightsSpec, Resolved, SceneError};
-use crate::grow::{GrowError, Grown, Mark, MarkKind};
-use crate::math::{Cancelled, Colour, DVec3, Progress};
-use crate::model::{Camera, Ground, Instance, Light, Material, Model, Object, Projection, Stroke, shining, to_world};
-use crate::skeleton::Skeleton;
+use crate::grow::{Canopy, GrowError, Grown, Mark, MarkKind, Rounds, Space, Step};
+use crate::math::{Cancelled, Colour, DVec3, Progress, Stream};
+use crate::model::{
+    Camera, Ground, Instance, Light, Material, Model, Object, Projection, SkinError, Stroke, foot, shining, to_world,
+};
+use crate::skeleton::{Part, Plant, Skeleton};
 
 /// The ground has faded into the horizon at this many times the camera's distance or the scene's size.
 const GROUND_REACH: f64 = 2.5;
@@ -42,12 +46,34 @@ pub fn grow(scene: &Resolved, show: &[MarkKind], max_memory: u64, progress: &Pro
     if needed > max_memory {
         return Err(Stage::Memory { needed, limit: max_memory });
     }
+    let told = |error: GrowError| match error {
+        GrowError::Scene { place, message } => Stage::Scene(scene.error(&place, message)),
+        GrowError::Cancelled(cancelled) => Stage::Cancelled(cancelled),
+    };
     let mut grown: Vec<Option<Grown>> = scene.steps.iter().map(|_| None).collect();
-    // A round holds all steps that wait for nothing that has not grown; it reads only what the rounds before made.
+    let mut growing: BTreeMap<usize, Rounds<'_>> = BTreeMap::new();
+    // A round holds all steps that wait for nothing that has not grown, and one repetition of each that is under way; it
+    // reads only what the rounds before made.
     while grown.iter().any(Option::is_none) {
-        let is_ready = |i: &usize| grown[*i].is_none() && scene.steps[*i].after().all(|before| grown[before].is_some());
-        let round: Vec<usize> = (0..grown.len()).filter(is_ready).collect();
+        let is_ready = |i: &usize| {
+            grown[*i].is_none()
+                && !growing.contains_key(i)
+                && scene.steps[*i].after().all(|before| grown[before].is_some())
+        };
+        let ready: Vec<usize> = (0..grown.len()).filter(is_ready).collect();
         let earlier: Vec<Option<&Skeleton>> = grown.iter().map(|g| g.as_ref().map(|g| &g.skeleton)).collect();
+        let (repeated, round): (Vec<usize>, Vec<usize>) = ready.into_iter().partition(|&i| scene.steps[i].repeat.is_some());
+        for i in repeated {
+            let step = &scene.steps[i];
+            if let (Some(repeat), Space::Scatter(space)) = (&step.repeat, &step.space) {
+                growing.insert(i, Rounds::new(step, repeat, space, scene.seed, &earlier).map_err(told)?);
+            }
+        }
+        let canopies: Vec<Vec<Canopy>> = {
+            let world: Vec<&Skeleton> =
+                earlier.iter().copied().flatten().chain(growing.values().map(Rounds::skeleton)).collect();
+            growing.values().map(|rounds| rounds.clumps().map(|clump| Canopy::new(&world, clump)).collect()).collect()
+        };
         let grow = |&i: &usize| scene.steps[i].grow(scene.seed, &earlier, show, progress);
         // Side by side where memory allows; the result is the same.
         let together: u64 = round.iter().map(|&i| scene.steps[i].bytes_needed()).sum();
@@ -56,13 +82,69 @@ pub fn grow(scene: &Resolved, show: &[MarkKind], max_memory: u64, progress: &Pro
         } else {
             round.iter().map(grow).collect()
         };
-        let finished = finished.map_err(|error| match error {
-            GrowError::Scene { place, message } => Stage::Scene(scene.error(&place, message)),
-            GrowError::Cancelled(cancelled) => Stage::Cancelled(cancelled),
-        })?;
+        let finished = finished.map_err(told)?;
+        for (rounds, canopies) in growing.values_mut().zip(&canopies) {
+            rounds.advance(canopies, show, progress).map_err(told)?;
+        }
         round.into_iter().zip(finished).for_each(|(i, step)| grown[i] = Some(step));
+        let done: Vec<usize> = growing.iter().filter(|(_, rounds)| rounds.is_done()).map(|(&i, _)| i).collect();
+        for i in done {
+            if let Some(rounds) = growing.remove(&i) {
+                let earlier: Vec<Option<&Skeleton>> = grown.iter().map(|g| g.as_ref().map(|g| &g.skeleton)).collect();
+                grown[i] = Some(rounds.finish(&earlier).map_err(told)?);
+            }
+        }
     }
-    Ok(grown.into_iter().flatten().collect())
+    let mut grown: Vec<Grown> = grown.into_iter().flatten().collect();
+    shape_plants(&scene.steps, &mut grown);
+    Ok(grown)
+}
+
+/// Gives plants, which several steps grew together, their widths and their form.
+fn shape_plants(steps: &[Step], grown: &mut [Grown]) {
+    // The step where each step's plant starts.
+    let base = |mut i: usize| loop {
+        match steps[i].width.starts_plant() {
+            Some(false) => i = *steps[i].sources().first()?,
+            Some(true) => return Some(i),
+            None => return None,
+        }
+    };
+    let mut plants: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    // In the order of growth: a step's plant is there before it.
+    let mut order: Vec<usize> = (0..steps.len()).collect();
+    order.sort_by_key(|&i| (grown[i].first_level, i));
+    for i in order {
+        if let Some(base) = base(i) {
+            plants.entry(base).or_default().push(i);
+        }
+    }
+    let shaped: Vec<(Vec<usize>, Vec<Skeleton>)> = plants
+        .into_par_iter()
+        .map(|(base, members)| {
+            let parts: Vec<Part<'_>> = members
+                .iter()
+                .map(|&i| Part {
+                    skeleton: &grown[i].skeleton,
+                    width: &steps[i].width,
+                    first_level: grown[i].first_level,
+                })
+                .collect();
+            let mut plant = Plant::new(&parts);
+            plant.thicken(&steps[base].width);
+            if let Some(form) = &steps[base].form {
+                plant.shape(form, &steps[base].width);
+            }
+            (members, plant.split())
+        })
+        .collect();
+    for (members, skeletons) in shaped {
+        for (i, mut skeleton) in members.into_iter().zip(skeletons) {
+            skeleton.classes.clone_from(&steps[i].classes);
+            skeleton.number_branches();
+            grown[i].skeleton = skeleton;
+        }
+    }
 }
 
 /// The model of a scene from what its steps yielded, for a picture of `size` pixels.
@@ -97,14 +179,30 @@ pub fn model(scene: &Resolved, grown: &[Grown], size: [u32; 2]) -> Result<Model,
             Some(mesh) => Object::of_mesh(&plan.name, mesh, plan.at, plan.material),
             None => plan.skin.dress(&plan.name, &skeletons, scene.is_flat, plan.at, plan.material),
         };
-        let mut object = object.map_err(|error| scene.error(&format!("object.{}", plan.name), error.to_string()))?;
-        object.shadow = plan.shadow;
+        let wrong = |error: SkinError| scene.error(&format!("object.{}", plan.name), error.to_string());
+        let object = object.map_err(wrong)?;
         let (first, digits) = (object.instances[0].at, object.digits);
-        object.instances.extend(plan.copies.iter().map(|copy| Instance {
-            at: digits.round_point(first + to_world(copy.at - plan.at, scene.is_flat)),
-            ..*copy
-        }));
-        objects.push(object);
+        let mut parts = object.by_level();
+        for (part, level) in parts.iter_mut().zip(0..) {
+            let material = plan.level_materials.get(level).or(plan.level_materials.last());
+            part.material = material.copied().unwrap_or(plan.material);
+        }
+        for (name, spec, mesh, material) in &plan.leaves {
+            let stream = Stream::new(scene.seed, &format!("leaves/{}/{name}", plan.name));
+            let grown_foot = foot(&skeletons).unwrap_or(DVec3::ZERO);
+            let poses = spec.place(&skeletons, grown_foot, digits, &stream);
+            if !poses.is_empty() {
+                parts.push(Object::of_poses(&format!("{}_{name}", plan.name), mesh, poses, first, digits, *material).map_err(wrong)?);
+            }
+        }
+        for mut part in parts {
+            part.shadow = plan.shadow;
+            part.instances.extend(plan.copies.iter().map(|copy| Instance {
+                at: digits.round_point(first + to_world(copy.at - plan.at, scene.is_flat)),
+                ..*copy
+            }));
+            objects.push(part);
+        }
     }
     // Marks move with the object that shows their step; steps that no object shows stay where they are.
     let mut marks = Vec::new();

@@ -10,7 +10,7 @@ use super::{Claim, Mistake, TrackSpec};
 use crate::geom::ShapeSpec;
 use crate::grow::{MarkKind, SpaceSpec, Step, StepSpec};
 use crate::math::{Colour, Degrees, Point, Ref};
-use crate::model::{CameraSpec, GlowSpec, GroundSpec, LightSpec, Material, Skin, SkySpec, ViewSpec};
+use crate::model::{CameraSpec, GlowSpec, GroundSpec, LeavesSpec, LightSpec, Material, Skin, SkySpec, ViewSpec};
 
 /// A scene: named growth steps in named spaces, the objects that they become, and how these are seen.
 ///
@@ -97,6 +97,12 @@ pub struct ObjectSpec {
     /// What it is made of.
     #[serde(default)]
     pub material: Option<Ref<Material>>,
+    /// What its levels are made of, from the first on, where they differ; the last stays.
+    #[serde(default)]
+    pub level_materials: Vec<Ref<Material>>,
+    /// Leaves, fruit and blossom along the ends of its limbs, by name.
+    #[serde(default)]
+    pub leaves: BTreeMap<String, LeavesSpec>,
     /// How far it is moved from where it grew.
     #[serde(default)]
     pub at: Option<Point>,

@@ -7,6 +7,7 @@ mod build;
 mod claim;
 mod document;
 mod mistake;
+mod repeat;
 mod resolve;
 mod schema;
 mod steps;

@@ -5,13 +5,16 @@ use std::sync::Arc;
 
 use super::tree::Entry;
 use super::{Claim, LightsSpec, Mistake, ObjectSpec, Scene, SceneError, Source};
-use crate::files::{Folder, decode_grey, decode_obj, decode_panorama, decode_plate, resize_grey, resize_plate};
+use crate::files::{
+    Folder, decode_grey, decode_mesh, decode_panorama, decode_plate, decode_sketch, leaf_names, resize_grey,
+    resize_plate,
+};
 use crate::geom::{Shape, ShapeSpec};
-use crate::grow::{MarkKind, NodesSpec, Space, SpaceSpec, Step};
-use crate::math::{Colour, DVec3, Degrees, Ref, unknown};
+use crate::grow::{MarkKind, Space, SpaceSpec, Step};
+use crate::math::{Colour, DVec2, DVec3, Degrees, Ref, unknown};
 use crate::model::{
-    CameraSpec, GlowSpec, GroundSpec, Instance, Light, LightSpec, Material, Mesh, Skin, Sky, SkySpec, ViewFrame,
-    ViewSpec,
+    CameraSpec, GlowSpec, GroundSpec, Instance, LeavesSpec, Light, LightSpec, Material, Mesh, Skin, Sky, SkySpec,
+    ViewFrame, ViewSpec, ball_mesh, leaf_mesh,
 };
 use crate::raster::{Grey, Plate};
 
@@ -74,6 +77,10 @@ pub struct ObjectPlan {
     pub skin: Skin,
     /// Index of its material in [`Resolved::materials`].
     pub material: usize,
+    /// Materials of its levels, where they differ; the last stays.
+    pub level_materials: Vec<usize>,
+    /// What grows along its ends: its name, what it is, one of it, and its material.
+    pub leaves: Vec<(String, LeavesSpec, Mesh, usize)>,
     /// How far it is moved, in scene space.
     pub at: DVec3,
     /// Where else it stands; their `at` is how far it is moved.
@@ -136,7 +143,7 @@ pub(super) fn resolve(
     let pixel = view.as_ref().map(|view| view.frame.pixel);
     let mut r = Resolver { scene: &scene, folder: &source.folder, tree, mistakes };
     for (name, spec) in &scene.shape {
-        let shape = spec.resolve(&scene.shape);
+        let shape = spec.resolve(&scene.shape, r.folder);
         r.note(&format!("shape.{name}"), shape);
     }
     let is_flat = r.is_flat();
@@ -144,6 +151,7 @@ pub(super) fn resolve(
         scene.space.iter().map(|(name, spec)| (name, r.space(name, spec))).collect();
     let steps: Vec<Option<Step>> = scene.grow.iter().map(|(name, spec)| r.step(name, spec, &spaces, pixel)).collect();
     r.circles(&steps);
+    r.plants(&steps);
     if view.is_some() && !is_flat {
         r.wrong("view", "a view is for flat scenes: those in space have a camera".to_owned());
     }
@@ -220,21 +228,18 @@ impl Resolver<'_> {
     }
 
     pub fn shape(&mut self, place: &str, spec: &ShapeSpec) -> Option<Shape> {
-        let shape = spec.resolve(&self.scene.shape);
+        let shape = spec.resolve(&self.scene.shape, self.folder);
         self.note(place, shape)
     }
 
     /// All spaces are flat, or none is.
     fn is_flat(&mut self) -> bool {
         let scene = self.scene;
-        let flat = |spec: &SpaceSpec| {
-            let NodesSpec::Lattice(lattice) = &spec.nodes;
-            lattice.neighbours.dimensions() == 2
-        };
+        let flat = |spec: &SpaceSpec| spec.nodes.is_plane();
         let is_flat = scene.space.values().next().is_some_and(flat);
         if let Some((name, _)) = scene.space.iter().find(|(_, spec)| flat(spec) != is_flat) {
-            let message = "a scene's lattices are all flat (4 or 8 neighbours) or all in space (6, 18, 26)".to_owned();
-            self.wrong(&format!("space.{name}.nodes.lattice.neighbours"), message);
+            let message = "a scene's spaces are all flat (lattices with 4 or 8 neighbours, scattered nodes with `plane = true`) or all in space".to_owned();
+            self.wrong(&format!("space.{name}.nodes"), message);
         }
         is_flat
     }
@@ -305,17 +310,39 @@ impl Resolver<'_> {
         let mesh = match &spec.mesh {
             Some(file) => {
                 let read = self.folder.read(file);
-                let mesh = read.and_then(|b| decode_obj(&b).map_err(|error| format!("cannot read `{file}`: {error}")));
+                let mesh = read.and_then(|b| decode_mesh(file, &b).map_err(|error| format!("cannot read `{file}`: {error}")));
                 self.note(&format!("{place}.mesh"), mesh).map(Some)
             }
             None => Some(None),
         };
         let names = materials.iter().map(|(name, _)| name);
         let material = match &spec.material {
-            Some(material) => self.find(&format!("{place}.material"), "material", material, names)?,
+            Some(material) => self.find(&format!("{place}.material"), "material", material, names.clone())?,
             None => names.clone().position(|n| n == "ink").or_else(|| names.clone().position(|n| n == "bark"))?,
         };
+        let level_materials: Vec<_> = (0..)
+            .zip(&spec.level_materials)
+            .map(|(i, material): (usize, _)| {
+                self.find(&format!("{place}.level_materials.{i}"), "material", material, names.clone())
+            })
+            .collect();
+        let leaves: Vec<_> = spec
+            .leaves
+            .iter()
+            .map(|(key, leaves)| {
+                let place = format!("{place}.leaves.{key}");
+                if spec.grow.is_empty() {
+                    self.wrong(&place, "only what grew bears leaves".to_owned());
+                }
+                let material = self.find(&format!("{place}.material"), "material", &leaves.material, names.clone())?;
+                let mesh = leaf(&leaves.shape, leaves.fold.radians(), self.folder);
+                let mesh = self.note(&format!("{place}.shape"), mesh)?;
+                Some((key.clone(), leaves.clone(), mesh, material))
+            })
+            .collect();
         Some(ObjectPlan {
+            level_materials: level_materials.into_iter().collect::<Option<_>>()?,
+            leaves: leaves.into_iter().collect::<Option<_>>()?,
             name: name.to_owned(),
             steps: steps.into_iter().collect::<Option<_>>()?,
             mesh: mesh?,
@@ -391,4 +418,23 @@ impl Resolver<'_> {
         }
         lights
     }
+}
+
+/// One leaf: a ball, a shape that comes with the program, or the outline in an SVG file beside the scene.
+fn leaf(shape: &str, fold: f64, folder: &Folder) -> Result<Mesh, String> {
+    if shape == "ball" {
+        return Ok(ball_mesh());
+    }
+    let bytes = if shape.ends_with(".svg") {
+        folder.read(shape)?
+    } else {
+        let own = Folder::Embedded("leaves".into()).read(&format!("{shape}.svg"));
+        own.map_err(|_| unknown("leaf", shape, leaf_names().iter()))?
+    };
+    let wrong = |error: String| format!("cannot use `{shape}` as a leaf: {error}");
+    let page = decode_sketch(&bytes).map_err(wrong)?;
+    let outline = page.lines.iter().find(|(_, is_closed)| *is_closed).map(|(line, _)| line);
+    let outline = outline.ok_or_else(|| wrong("it has no closed outline".to_owned()))?;
+    let outline: Vec<DVec2> = outline.iter().map(|p| DVec2::new(p.x * page.aspect, p.y)).collect();
+    leaf_mesh(&outline, fold).map_err(wrong)
 }

@@ -6,15 +6,18 @@ use std::sync::Arc;
 use super::resolve::Resolver;
 use crate::files::{decode_grey, decode_sketch};
 use crate::geom::{Bounds, Shape, Strokes};
-use crate::graph::{CostField, FieldSpec, FieldUse, HeightEnd, Measure, MeasureSpec};
+use crate::graph::{CostField, FieldSpec, FieldUse, HeightEnd, Joining, Measure, MeasureSpec, Sectors};
 use crate::grow::{
-    EndpointSpec, Endpoints, FromSpec, LatticeSpec, Method, MethodSpec, Near, NearSpec, NodesSpec, Part, Placement,
-    SIDE, Source as Generators, Space, SpaceSpec, Step, StepSpec,
+    Clusters, EndpointSpec, Endpoints, FromSpec, LatticeSpace, LatticeSpec, Method, MethodSpec, Near, NearSpec,
+    NodesSpec, Part, Placement, SIDE, ScatterSpace, ScatterSpec, Source as Generators, Space, SpaceSpec, Step,
+    StepSpec,
 };
-use crate::math::{DVec2, DVec3, Point};
+use crate::math::{DVec2, DVec3, PerRound, Point};
 
 /// The dielectric breakdown model solves for all nodes again and again: more would take days.
 const MOST_DBM: u64 = 4 << 20;
+/// More scattered nodes than this are refused.
+const MOST_SCATTERED: f64 = 1e8;
 
 impl Resolver<'_> {
     pub(super) fn space(&mut self, name: &str, spec: &SpaceSpec) -> Option<Space> {
@@ -24,25 +27,66 @@ impl Resolver<'_> {
             Some(forbid) => Some(self.shape(&format!("{place}.forbid"), forbid)?),
             None => None,
         };
-        let NodesSpec::Lattice(LatticeSpec { spacing, neighbours }) = spec.nodes;
         let shape = shape?;
-        let window =
-            self.note(&format!("{place}.nodes.lattice.spacing"), Space::window(&shape, spacing, neighbours))?;
-        let up = if neighbours.dimensions() == 2 { 1 } else { 2 };
+        let up = if spec.nodes.is_plane() { 1 } else { 2 };
         let fields: Vec<_> = spec
             .field
             .iter()
             .map(|(key, field)| self.field(&format!("{place}.field.{key}"), field, shape.bounds(), up))
             .collect();
-        Some(Space {
-            shape,
-            forbid,
-            window,
-            neighbours,
-            weights: spec.weights,
-            fields: fields.into_iter().collect::<Option<_>>()?,
-            stream: spec.stream.clone().unwrap_or_else(|| name.to_owned()),
-        })
+        let fields = fields.into_iter().collect::<Option<_>>()?;
+        let (weights, stream) = (spec.weights, spec.stream.clone().unwrap_or_else(|| name.to_owned()));
+        match spec.nodes {
+            NodesSpec::Lattice(LatticeSpec { spacing, neighbours }) => {
+                if spec.clusters.is_some() {
+                    let message = "clusters need scattered nodes (`nodes.scatter`)".to_owned();
+                    self.wrong(&format!("{place}.clusters"), message);
+                }
+                let window = LatticeSpace::window(&shape, spacing, neighbours);
+                let window = self.note(&format!("{place}.nodes.lattice.spacing"), window)?;
+                Some(Space::Lattice(LatticeSpace { shape, forbid, window, neighbours, weights, fields, stream }))
+            }
+            NodesSpec::Scatter(ScatterSpec { spacing, sectors, radius, plane }) => {
+                let joining = match (sectors, radius) {
+                    (Some(_), Some(_)) => Err("nodes are joined either by `sectors` or within a `radius`".to_owned()),
+                    (_, Some(radius)) => Ok(Joining::Radius(radius)),
+                    (sectors, None) => {
+                        Sectors::new(sectors.unwrap_or(if plane { 6 } else { 8 }), plane).map(Joining::Yao)
+                    }
+                };
+                let joining = self.note(&format!("{place}.nodes.scatter"), joining)?;
+                let clusters = match &spec.clusters {
+                    Some(clusters) => Some(Clusters {
+                        inside: self.shape(&format!("{place}.clusters.inside"), &clusters.inside)?,
+                        apart: clusters.apart,
+                        radius: clusters.radius,
+                        foot: clusters.foot.0,
+                        neck: clusters.neck,
+                    }),
+                    None => None,
+                };
+                let space = ScatterSpace {
+                    shape,
+                    forbid,
+                    spacing,
+                    is_plane: plane,
+                    joining,
+                    clusters,
+                    weights,
+                    fields,
+                    stream,
+                };
+                let estimate = space.estimate();
+                if estimate.is_nan() || estimate > MOST_SCATTERED {
+                    let message = format!(
+                        "about {estimate:.1e} nodes are too many ({MOST_SCATTERED:.0e} at most): use a wider spacing or a smaller shape"
+                    );
+                    self.wrong(&format!("{place}.nodes.scatter.spacing"), message);
+                    return None;
+                }
+                Some(Space::Scatter(space))
+            }
+        }
     }
 
     fn field(&mut self, place: &str, spec: &FieldSpec, frame: Bounds, up: usize) -> Option<CostField> {
@@ -125,7 +169,7 @@ impl Resolver<'_> {
     ) -> Option<Near> {
         let step = self.find(&format!("{place}.near.step"), "step", &near.step, self.scene.grow.keys())?;
         Some(Near {
-            count: spec.count?,
+            count: spec.count.as_ref()?.once()? as u32,
             step,
             reach: near.reach,
             toward: near.toward,
@@ -158,20 +202,34 @@ impl Resolver<'_> {
             FromSpec::Inside(shape) => self.shape(&format!("{place}.from.inside"), shape).map(Generators::Inside),
             FromSpec::All(step) => self
                 .find(&format!("{place}.from.all"), "step", step, self.scene.grow.keys())
-                .map(|step| Generators::Step(step, Part::All)),
+                .map(|step| Generators::Steps(vec![step], Part::All)),
             FromSpec::Ends(step) => self
                 .find(&format!("{place}.from.ends"), "step", step, self.scene.grow.keys())
-                .map(|step| Generators::Step(step, Part::Ends)),
+                .map(|step| Generators::Steps(vec![step], Part::Ends)),
+            FromSpec::EveryEnd(steps) => {
+                let found: Vec<_> = (0..)
+                    .zip(steps)
+                    .map(|(i, step): (usize, _)| {
+                        self.find(&format!("{place}.from.every_end.{i}"), "step", step, self.scene.grow.keys())
+                    })
+                    .collect();
+                found.into_iter().collect::<Option<_>>().map(|steps| Generators::Steps(steps, Part::EveryEnd))
+            }
         };
-        if spec.along > 0.0 && !matches!(spec.from, FromSpec::All(_) | FromSpec::Ends(_)) {
+        if spec.along > 0.0 && (matches!(spec.from, FromSpec::At(_) | FromSpec::Inside(_)) || spec.repeat.is_some()) {
             let message =
-                "`along` is about the step that this one grows from: it needs `from.all` or `from.ends`".to_owned();
+                "`along` is about the step that this one grows from: it needs `from.all` or `from.ends`, and no `repeat`".to_owned();
             self.wrong(&format!("{place}.along"), message);
         }
         let method = match spec.by {
             MethodSpec::Paths => Method::Paths,
             MethodSpec::Dbm(dbm) => {
-                if space.as_ref().is_some_and(|space| space.window.nodes() > MOST_DBM) {
+                let lattice = space.as_ref().and_then(Space::lattice);
+                if space.is_some() && (lattice.is_none() || spec.repeat.is_some()) {
+                    let message = "the dielectric breakdown model grows once, on a lattice".to_owned();
+                    self.wrong(&format!("{place}.by"), message);
+                }
+                if lattice.is_some_and(|space| space.window.nodes() > MOST_DBM) {
                     let message =
                         format!("the dielectric breakdown model takes {MOST_DBM} nodes at most: use a wider spacing");
                     self.wrong(&format!("{place}.space"), message);
@@ -184,19 +242,30 @@ impl Resolver<'_> {
         };
         let refine = match &spec.refine {
             Some(refine) => {
-                let refine = refine.resolve(space.as_ref()?.window.spacing, pixel);
+                let Some(lattice) = space.as_ref()?.lattice() else {
+                    let message = "paths are refined on lattices: scattered nodes take a smaller spacing".to_owned();
+                    self.wrong(&format!("{place}.refine"), message);
+                    return None;
+                };
+                let refine = refine.resolve(lattice.window.spacing, pixel);
                 Some(self.note(&format!("{place}.refine"), refine)?)
             }
             None => None,
         };
         let widths = spec.width.check(&classes);
         self.note(&format!("{place}.width"), widths);
+        let repeat = match &spec.repeat {
+            Some(repeat) => Some(self.repeat(&place, repeat, spec, space.as_ref())?),
+            None => None,
+        };
+        self.plant_width(&place, spec);
+        let rounds = repeat.as_ref().map(|repeat| repeat.times);
         let sets: Vec<_> = spec
             .to
             .iter()
             .map(|(key, set)| {
-                let placement =
-                    self.placement(&format!("{place}.to.{key}"), &format!("{name}/{key}"), set, space.as_ref());
+                let to = format!("{place}.to.{key}");
+                let placement = self.placement(&to, &format!("{name}/{key}"), set, space.as_ref(), rounds);
                 let class = classes.binary_search(&set.class).unwrap_or(0) as u16;
                 placement.map(|placement| Endpoints { name: key.clone(), class, placement })
             })
@@ -211,51 +280,105 @@ impl Resolver<'_> {
             method,
             along: spec.along,
             refine,
+            repeat,
             width: spec.width.clone(),
+            form: spec.form,
             smooth: spec.smooth,
             unreached: spec.unreached,
         })
     }
 
-    fn placement(&mut self, place: &str, own: &str, spec: &EndpointSpec, space: Option<&Space>) -> Option<Placement> {
+    /// `rounds` are those of a repeated step.
+    fn placement(
+        &mut self,
+        place: &str,
+        own: &str,
+        spec: &EndpointSpec,
+        space: Option<&Space>,
+        rounds: Option<u32>,
+    ) -> Option<Placement> {
         if spec.count.is_none() {
-            let given = [("near", spec.near.is_some()), ("inside", spec.inside.is_some()), ("apart", spec.apart > 0.0)];
+            let given = [
+                ("near", spec.near.is_some()),
+                ("inside", spec.inside.is_some()),
+                ("shell", spec.shell.is_some()),
+                ("apart", spec.apart > 0.0),
+            ];
             for (key, _) in given.iter().filter(|(_, is_given)| *is_given) {
                 let message = format!("`{key}` says where endpoints are placed at random: it needs `count`");
                 self.wrong(&format!("{place}.{key}"), message);
             }
         }
-        match (&spec.count, &spec.at, &spec.sketch) {
-            (Some(count), None, None) => {
-                let inside = match &spec.inside {
-                    Some(inside) => self.shape(&format!("{place}.inside"), inside)?,
-                    None => space?.shape.clone(),
-                };
+        if rounds.is_some() && (spec.count.is_none() || spec.near.is_some()) {
+            let message = "a repeated step places its endpoints at random around each end: it needs `count`, and no `near`";
+            self.wrong(place, message.to_owned());
+            return None;
+        }
+        match (&spec.count, &spec.at, &spec.sketch, &spec.through) {
+            (Some(count), None, None, None) => {
+                self.count(&format!("{place}.count"), count, rounds)?;
                 let stream = spec.stream.clone().unwrap_or_else(|| own.to_owned());
+                let inside = match &spec.inside {
+                    Some(inside) => Some(self.shape(&format!("{place}.inside"), inside)?),
+                    None => None,
+                };
                 if let Some(near) = &spec.near {
+                    if spec.shell.is_some() {
+                        self.wrong(&format!("{place}.shell"), "`near` and `shell` do not go together".to_owned());
+                    }
+                    let inside = inside.or_else(|| space.map(|space| space.shape().clone()))?;
                     return self.near(place, spec, near, stream, inside).map(Placement::Near);
                 }
-                Some(Placement::Random { count: *count, inside, apart: spec.apart, stream })
+                let (count, apart, shell) = (count.clone(), spec.apart, spec.shell);
+                Some(Placement::Random { count, inside, apart, shell, stream })
             }
-            (None, Some(points), None) => {
+            (None, Some(points), None, None) => {
                 if points.is_empty() {
                     self.wrong(&format!("{place}.at"), "list at least one endpoint".to_owned());
                 }
                 Some(Placement::At(points.iter().map(|p| p.0).collect()))
             }
-            (None, None, Some(file)) => {
+            (None, None, None, Some(lists)) => {
+                if lists.is_empty() || lists.iter().any(Vec::is_empty) {
+                    self.wrong(&format!("{place}.through"), "list at least one point for each path".to_owned());
+                }
+                if space?.lattice().is_some() {
+                    let message = "`through` needs scattered nodes (`nodes.scatter`)".to_owned();
+                    self.wrong(&format!("{place}.through"), message);
+                }
+                Some(Placement::Through(lists.iter().map(|list| list.iter().map(|p| p.0).collect()).collect()))
+            }
+            (None, None, Some(file), None) => {
                 let space = space?;
-                let frame = space.shape.bounds();
+                let frame = space.shape().bounds();
                 let (_, points) = self.sketch(&format!("{place}.sketch"), file, frame, space.up())?;
                 let raise = |p: DVec3| if space.up() == 1 { p } else { DVec3::new(p.x, frame.centre().y, p.y) };
                 Some(Placement::At(points.into_iter().map(raise).collect()))
             }
             _ => {
                 let message =
-                    "endpoints need exactly one of `count` (at random), `at` (a list) and `sketch` (an SVG file)";
+                    "endpoints need exactly one of `count` (at random), `at` (a list), `through` (lists) and `sketch` (an SVG file)";
                 self.wrong(place, message.to_owned());
                 None
             }
         }
+    }
+
+    /// Counts are whole, and there is at least one in some round.
+    fn count(&mut self, place: &str, count: &PerRound, rounds: Option<u32>) -> Option<()> {
+        let least = if rounds.is_some() { 0.0 } else { 1.0 };
+        let all = rounds.unwrap_or(1);
+        let is_whole = (0..all).all(|round| count.at(round) == libm::floor(count.at(round)) || count.once().is_none());
+        if rounds.is_none() && count.once().is_none() {
+            self.wrong(place, "a number for each round needs `repeat`".to_owned());
+        } else if !count.is_within(all, least, 1e6) || !is_whole {
+            let found: Vec<String> = (0..all.min(8)).map(|round| count.at(round).to_string()).collect();
+            self.wrong(place, format!("expected whole numbers from {least} to 1000000, found {}", found.join(", ")));
+        } else if (0..all).all(|round| count.at(round) < 1.0) {
+            self.wrong(place, "no round has an endpoint: nothing would grow".to_owned());
+        } else {
+            return Some(());
+        }
+        None
     }
 }

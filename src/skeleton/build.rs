@@ -34,6 +34,8 @@ pub struct Path {
     pub end: u32,
     /// The path's class, as an index of [`Skeleton::classes`].
     pub class: u16,
+    /// The node that it was planned from: the root of its graph.
+    pub root: u32,
 }
 
 /// A forest of nodes; parents precede children.
@@ -86,7 +88,7 @@ impl Skeleton {
             });
             parent = Some(at);
         }
-        self.paths.extend(parent.map(|end| Path { end, class }));
+        self.paths.extend(parent.map(|end| Path { end, class, root: 0 }));
     }
 
     /// Gives every tree of the forest an age and a largest radius, told by `start` from its root.
@@ -128,9 +130,37 @@ impl Skeleton {
         grown.paths = self
             .paths
             .iter()
-            .filter_map(|path| renamed[path.end as usize].map(|end| Path { end, class: path.class }))
+            .filter_map(|path| {
+                let [end, root] = [path.end, path.root].map(|node| renamed[node as usize]);
+                Some(Path { end: end?, root: root?, ..*path })
+            })
             .collect();
         grown
+    }
+
+    /// Names the tree's root as that of every path.
+    pub fn root_paths(&mut self) {
+        let mut roots: Vec<u32> = Vec::with_capacity(self.nodes.len());
+        for (i, node) in (0..).zip(&self.nodes) {
+            roots.push(node.parent.map_or(i, |parent| roots[parent as usize]));
+        }
+        for path in &mut self.paths {
+            path.root = roots[path.end as usize];
+        }
+    }
+
+    /// The ends of paths, once each, with the way to each from the root of its graph: all of them, or those that no other
+    /// path was planned from.
+    pub fn ends(&self, every: bool) -> impl Iterator<Item = (u32, DVec3)> + '_ {
+        let mut is_kept = vec![true; self.nodes.len()];
+        if !every {
+            self.paths.iter().filter(|path| path.root != path.end).for_each(|path| is_kept[path.root as usize] = false);
+        }
+        self.paths.iter().filter_map(move |path| {
+            let kept = std::mem::replace(&mut is_kept[path.end as usize], false);
+            let way = self.nodes[path.end as usize].position - self.nodes[path.root as usize].position;
+            kept.then_some((path.end, way))
+        })
     }
 
     /// The nodes with their parents, roots left out.

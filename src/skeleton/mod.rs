@@ -5,7 +5,10 @@
 
 mod build;
 mod dimension;
+mod form;
 mod measure;
+mod merge;
+mod plant;
 mod relate;
 mod smooth;
 mod spline;
@@ -13,8 +16,10 @@ mod width;
 
 pub use build::{Path, Skeleton, SkeletonNode};
 pub use dimension::dimension;
+pub use form::{Form, FormSpec};
 pub use measure::{Measurement, measure};
+pub use plant::{Part, Plant};
 pub use relate::{apart, crossings, floating, shared_ends};
 pub use smooth::smooth;
 pub use spline::{bend, overlap};
-pub use width::{PerClass, Taper, Width};
+pub use width::{ByLength, PerClass, Pipe, Taper, Width};

@@ -79,6 +79,7 @@ fn resample(skeleton: &Skeleton, pieces: impl Fn(&SkeletonNode, &SkeletonNode, u
     let mut paths = skeleton.paths.clone();
     for path in &mut paths {
         path.end = renamed[path.end as usize];
+        path.root = renamed[path.root as usize];
     }
     Skeleton { nodes, paths, classes: skeleton.classes.clone() }
 }

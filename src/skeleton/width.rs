@@ -8,7 +8,7 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 
 use super::Skeleton;
-use crate::math::{power, unknown};
+use crate::math::{PerRound, power, unknown};
 
 /// One number for all classes of paths, or one for each by name.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,6 +70,58 @@ pub enum Width {
     Taper(Taper),
     /// The same radius everywhere.
     Constant(#[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))] f64),
+    /// By the length of the way to the farthest tip (Xu and Mould 2012, section 3.2).
+    Length(ByLength),
+    /// By what a limb carries: its area is the sum of its children's (Leonardo's rule).
+    Pipe(Pipe),
+}
+
+/// `(s / unit)^z`, scaled so that the plant starts with `root`: s is the length from an endpoint back to a node, through
+/// all the steps before; of several endpoints the one that gives the most counts. With one z for all it is `root (s /
+/// s_max)^z`; with several a larger z makes the ways from its endpoints thicker, as the paper's bare s^z does, whose unit
+/// is the spacing of its graphs.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ByLength {
+    /// Radius where the plant starts, in scene units. A step that gives none carries on the plant that it grows from.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+    pub root: Option<f64>,
+    /// Least radius, in scene units, given by the step where the plant starts.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub tip: Option<f64>,
+    /// The length whose power is 1, in scene units, given by the step where the plant starts; by default a thousandth of
+    /// the longest way.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+    pub unit: Option<f64>,
+    /// How quickly ways from this step's endpoints thicken; the paper has 0.6, 0.5, 0.4, 0.3 from the first level to the
+    /// last.
+    pub z: PerRound,
+}
+
+/// `r^power` is the sum of what the limbs that it carries have.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Pipe {
+    /// Radius where the plant starts, in scene units: all are scaled to it. A step that gives none carries on the plant
+    /// that it grows from.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+    pub root: Option<f64>,
+    /// Least radius, in scene units, given by the step where the plant starts.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub tip: Option<f64>,
+    /// 2 keeps the area; trees have 1.8 to 2.7.
+    #[serde(default = "square")]
+    #[schemars(range(min = 1.0, max = 5.0))]
+    pub power: f64,
+}
+
+fn square() -> f64 {
+    2.0
 }
 
 /// `T = from (1 - (d/d_max)^beta) + to (d/d_max)^beta`, with d the cost of a node and `d_max` that of the path's own
@@ -92,20 +144,30 @@ fn even() -> PerClass {
 }
 
 impl Width {
+    /// Is it one that belongs to whole plants ([`crate::skeleton::Plant`])? Whether it starts one then.
+    #[must_use]
+    pub fn starts_plant(&self) -> Option<bool> {
+        match self {
+            Self::Taper(_) | Self::Constant(_) => None,
+            Self::Length(ByLength { root, .. }) | Self::Pipe(Pipe { root, .. }) => Some(root.is_some()),
+        }
+    }
+
     /// Is there a number for each of `classes`?
     ///
     /// # Errors
     /// A sentence where one is missing.
     pub fn check(&self, classes: &[String]) -> Result<(), String> {
         match self {
-            Self::Constant(_) => Ok(()),
+            Self::Constant(_) | Self::Length(_) | Self::Pipe(_) => Ok(()),
             Self::Taper(Taper { from, to, beta }) => {
                 [from, to, beta].into_iter().try_for_each(|numbers| numbers.resolve(classes).map(drop))
             }
         }
     }
 
-    /// Gives every node of `skeleton` its radius; where paths share a node the larger stays.
+    /// Gives every node of `skeleton` its radius; where paths share a node the larger stays. Widths of whole plants wait
+    /// until these have grown.
     ///
     /// # Errors
     /// A sentence where a class of the skeleton has no number.
@@ -118,6 +180,7 @@ impl Width {
                 Ok(())
             }
             Self::Taper(taper) => taper.apply(skeleton),
+            Self::Length(_) | Self::Pipe(_) => Ok(()),
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::bvh::{Boxes, Cones, Entry, Ray, RoundCone, Triangle, Triangles};
 use crate::geom::Bounds;
-use crate::math::DVec3;
-use crate::model::{Dome, Frame, Instance, Model, Object, limb_frames};
+use crate::math::{DMat3, DVec3};
+use crate::model::{Dome, Frame, Instance, Model, Object, Pose, limb_frames};
 
 /// Rays from surfaces start this far off them, as a share of the world's size: more than single precision loses.
 const OFF: f64 = 2e-5;
@@ -15,8 +15,8 @@ pub struct World<'a> {
     /// The light of the sky.
     pub dome: Dome,
     shapes: Vec<Shape>,
-    /// Object and instance of each box.
-    instances: Vec<(u32, Instance)>,
+    /// Object and place of each box.
+    instances: Vec<(u32, Place)>,
     boxes: Boxes,
     /// The first number of each object's branches among all.
     branches: Vec<u32>,
@@ -32,6 +32,60 @@ struct Shape {
     triangles: Triangles,
     /// The axes of limbs, where a pattern needs them.
     frames: Vec<Frame>,
+}
+
+/// Where an object, or one posed mesh of it, is in the world.
+#[derive(Clone, Copy)]
+enum Place {
+    /// As an instance.
+    Whole(Instance),
+    /// By a matrix: where its origin is, the axes, and their inverse.
+    Posed(DVec3, DMat3, DMat3),
+}
+
+impl Place {
+    fn posed(instance: &Instance, pose: &Pose) -> Self {
+        let axes = [pose.axes.x_axis, pose.axes.y_axis, pose.axes.z_axis];
+        let [x, y, z] = axes.map(|axis| instance.turned(axis * instance.scale));
+        let axes = DMat3::from_cols(x, y, z);
+        Self::Posed(instance.to_world(pose.at), axes, axes.inverse())
+    }
+
+    fn to_world(self, p: DVec3) -> DVec3 {
+        match self {
+            Self::Whole(instance) => instance.to_world(p),
+            Self::Posed(at, axes, _) => axes * p + at,
+        }
+    }
+
+    fn to_own(self, p: DVec3) -> DVec3 {
+        match self {
+            Self::Whole(instance) => instance.to_object(p),
+            Self::Posed(at, _, inverse) => inverse * (p - at),
+        }
+    }
+
+    /// The ray in the object's own space, and how much longer distances along it are in the world.
+    fn ray(self, ray: &Ray) -> (Ray, f64) {
+        let (direction, scale) = match self {
+            Self::Whole(instance) => (instance.unturned(ray.direction), instance.scale),
+            Self::Posed(.., inverse) => {
+                let direction = inverse * ray.direction;
+                let length = direction.length();
+                (direction / length, 1.0 / length)
+            }
+        };
+        let origin = self.to_own(ray.origin);
+        (Ray { origin, direction, near: ray.near / scale, far: ray.far / scale }, scale)
+    }
+
+    /// A unit normal in the world from one of the object's own.
+    fn normal(self, normal: DVec3) -> DVec3 {
+        match self {
+            Self::Whole(instance) => instance.turned(normal),
+            Self::Posed(.., inverse) => (inverse.transpose() * normal).normalize_or(DVec3::Z),
+        }
+    }
 }
 
 /// What a ray met.
@@ -104,8 +158,15 @@ impl<'a> World<'a> {
     pub fn new(model: &'a Model) -> Self {
         let has_pattern = |object: &Object| model.materials[object.material].1.pattern.is_some();
         let shapes: Vec<Shape> = model.objects.iter().map(|o| Shape::new(o, has_pattern(o))).collect();
-        let instances: Vec<(u32, Instance)> =
-            (0..).zip(&model.objects).flat_map(|(i, o)| o.instances.iter().map(move |&place| (i, place))).collect();
+        let mut instances: Vec<(u32, Place)> = Vec::new();
+        for (i, object) in (0..).zip(&model.objects) {
+            for instance in &object.instances {
+                if object.poses.is_empty() {
+                    instances.push((i, Place::Whole(*instance)));
+                }
+                instances.extend(object.poses.iter().map(|pose| (i, Place::posed(instance, pose))));
+            }
+        }
         let boxes: Vec<_> = instances
             .iter()
             .map(|(object, place)| {
@@ -147,7 +208,7 @@ impl<'a> World<'a> {
     pub(super) fn within(&self, p: DVec3) -> Vec<Within> {
         let mut found = Vec::new();
         for (instance, (object, place)) in (0..).zip(&self.instances) {
-            let (shape, own) = (&self.shapes[*object as usize], place.to_object(p));
+            let (shape, own) = (&self.shapes[*object as usize], place.to_own(p));
             let bounds = shape.cones.bounds();
             if own.cmpge(bounds.min).all() && own.cmple(bounds.max).all() {
                 let object = &self.model.objects[*object as usize];
@@ -170,15 +231,16 @@ impl<'a> World<'a> {
         self.meet(&ray, &mut |instance, far| {
             let (object, place) = &self.instances[instance as usize];
             let shape = &self.shapes[*object as usize];
-            let mut own = to_object(&Ray { far, ..ray }, place);
+            let (mut own, scale) = place.ray(&Ray { far, ..ray });
+            let start = own;
             let mut found = |hit: Option<crate::bvh::Hit>, is_mesh: bool| {
                 if let Some(hit) = hit {
                     own.far = hit.t;
-                    best = Some((instance, is_mesh, hit.t * place.scale, hit.id));
+                    best = Some((instance, is_mesh, hit.t * scale, hit.id));
                 }
                 own
             };
-            let own = found(shape.cones.closest(&to_object(&Ray { far, ..ray }, place)), false);
+            let own = found(shape.cones.closest(&start), false);
             if !shape.triangles.is_empty() {
                 found(shape.triangles.closest(&own), true);
             }
@@ -188,7 +250,7 @@ impl<'a> World<'a> {
             Some((instance, true, t, id)) => Some(self.on_mesh(&ray, instance, t, id)),
             Some((instance, false, t, id)) => {
                 let (object, place) = &self.instances[instance as usize];
-                let own = to_object(&ray, place);
+                let (own, _) = place.ray(&ray);
                 let (cone, balls) = self.shapes[*object as usize].cone(&self.model.objects[*object as usize], id);
                 Some(self.on_cone(&ray, instance, t, cone.enter(&own), &cone, balls))
             }
@@ -197,10 +259,11 @@ impl<'a> World<'a> {
         for w in within {
             let (object, place) = &self.instances[w.instance as usize];
             let (cone, balls) = self.shapes[*object as usize].cone(&self.model.objects[*object as usize], w.id);
-            if let Some(entry) = cone.inner(&to_object(&ray, place))
-                && surface.is_none_or(|s| entry.t * place.scale < s.t)
+            let (own, scale) = place.ray(&ray);
+            if let Some(entry) = cone.inner(&own)
+                && surface.is_none_or(|s| entry.t * scale < s.t)
             {
-                let inner = self.on_cone(&ray, w.instance, entry.t * place.scale, Some(entry), &cone, balls);
+                let inner = self.on_cone(&ray, w.instance, entry.t * scale, Some(entry), &cone, balls);
                 surface = Some(Surface { is_inside: true, ..inner });
             }
         }
@@ -216,7 +279,7 @@ impl<'a> World<'a> {
                 return far;
             }
             let shape = &self.shapes[*object as usize];
-            let own = to_object(ray, place);
+            let (own, _) = place.ray(ray);
             met = shape.cones.is_blocked(&own) || (!shape.triangles.is_empty() && shape.triangles.is_blocked(&own));
             if met { f64::NEG_INFINITY } else { far }
         });
@@ -263,11 +326,11 @@ impl<'a> World<'a> {
     ) -> Surface {
         let (index, place) = &self.instances[instance as usize];
         let object = &self.model.objects[*index as usize];
-        let own = to_object(ray, place);
+        let (own, scale) = place.ray(ray);
         // In double precision, unless the two disagree whether it is met at all.
         let (t, normal, share) = match entry {
-            Some(entry) => (entry.t * place.scale, entry.normal, entry.share),
-            None => (t, cone.normal_at(own.at(t / place.scale)), 1.0),
+            Some(entry) => (entry.t * scale, entry.normal, entry.share),
+            None => (t, cone.normal_at(own.at(t / scale)), 1.0),
         };
         let [a, b] = balls.map(|i| &object.balls[i as usize]);
         let at = if share > 0.0 { 1 } else { 0 };
@@ -278,10 +341,10 @@ impl<'a> World<'a> {
                 if ball.radius < pattern.least_radius() {
                     return pattern.mean();
                 }
-                pattern.share(frame.local(own.at(t / place.scale)) / pattern.size())
+                pattern.share(frame.local(own.at(t / scale)) / pattern.size())
             })
         });
-        let normal = place.turned(normal);
+        let normal = place.normal(normal);
         Surface {
             t,
             point: ray.at(t),
@@ -299,8 +362,9 @@ impl<'a> World<'a> {
         let (index, place) = &self.instances[instance as usize];
         let object = &self.model.objects[*index as usize];
         let triangle = triangle(object, id as usize);
-        let (t, [v, w]) = match triangle.meet(&to_object(ray, place)) {
-            Some((t, weights)) => (t * place.scale, weights),
+        let (own, scale) = place.ray(ray);
+        let (t, [v, w]) = match triangle.meet(&own) {
+            Some((t, weights)) => (t * scale, weights),
             None => (t, [0.0; 2]),
         };
         let flat = triangle.normal();
@@ -312,7 +376,7 @@ impl<'a> World<'a> {
             }
             None => flat,
         };
-        let normal = place.turned(normal);
+        let normal = place.normal(normal);
         Surface {
             t,
             point: ray.at(t),
@@ -325,15 +389,5 @@ impl<'a> World<'a> {
             pattern: self.model.materials[object.material].1.pattern.map_or(0.0, |pattern| pattern.mean()),
             is_inside: false,
         }
-    }
-}
-
-/// The ray in the space of an object: its distances there are the world's over the scale.
-fn to_object(ray: &Ray, place: &Instance) -> Ray {
-    Ray {
-        origin: place.to_object(ray.origin),
-        direction: place.unturned(ray.direction),
-        near: ray.near / place.scale,
-        far: ray.far / place.scale,
     }
 }

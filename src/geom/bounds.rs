@@ -1,0 +1,74 @@
+//! Boxes along the axes.
+
+use crate::math::DVec3;
+
+/// A box around something, along the axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// The corner with the lowest coordinates.
+    pub min: DVec3,
+    /// The corner with the highest coordinates.
+    pub max: DVec3,
+}
+
+impl Bounds {
+    /// The bounds of nothing: any union with it is the other.
+    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+
+    /// The least box that holds both.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// The box around a ball.
+    #[must_use]
+    pub fn of_ball(centre: DVec3, radius: f64) -> Self {
+        Self { min: centre - radius, max: centre + radius }
+    }
+
+    /// The same box elsewhere.
+    #[must_use]
+    pub fn moved(self, by: DVec3) -> Self {
+        Self { min: self.min + by, max: self.max + by }
+    }
+
+    /// Larger by this on all sides.
+    #[must_use]
+    pub fn grown(self, by: f64) -> Self {
+        Self { min: self.min - by, max: self.max + by }
+    }
+
+    /// Extent along each axis.
+    #[must_use]
+    pub fn size(&self) -> DVec3 {
+        self.max - self.min
+    }
+
+    /// The middle.
+    #[must_use]
+    pub fn centre(&self) -> DVec3 {
+        (self.min + self.max) * 0.5
+    }
+
+    /// Its eight corners.
+    #[must_use]
+    pub fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|i| {
+            let pick = |bit: usize, axis: usize| if i & bit == 0 { self.min[axis] } else { self.max[axis] };
+            DVec3::new(pick(1, 0), pick(2, 1), pick(4, 2))
+        })
+    }
+
+    /// Distance of `p` from it; 0 inside.
+    #[must_use]
+    pub fn distance(&self, p: DVec3) -> f64 {
+        (self.min - p).max(p - self.max).max(DVec3::ZERO).length()
+    }
+
+    /// Does it hold nothing?
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        !self.min.cmple(self.max).all()
+    }
+}

@@ -1,0 +1,167 @@
+//! Closed triangle meshes as shapes: which points are inside, and how far the surface is.
+
+use std::cell::Cell;
+use std::collections::HashMap;
+
+use super::Bounds;
+use crate::math::DVec3;
+
+/// Triangles in a leaf of the tree.
+const LEAF: usize = 4;
+/// A direction along which no edge of a mesh that people make lies: rays along it count crossings.
+const ASKEW: DVec3 = DVec3::new(0.348_155_311_911_395_6, 0.217_597_069_944_622_2, 0.911_834_006_311_001);
+
+/// A triangle mesh whose every edge joins two triangles that agree which side is out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClosedMesh {
+    triangles: Vec<[DVec3; 3]>,
+    /// A box each, the children of i at 2 i + 1 and 2 i + 2, halving the triangles down to leaves.
+    boxes: Vec<Bounds>,
+}
+
+impl ClosedMesh {
+    /// The solid inside these triangles.
+    ///
+    /// # Errors
+    /// A sentence where the mesh is empty or open.
+    pub fn new(points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, String> {
+        if triangles.is_empty() {
+            return Err("the mesh has no triangles".to_owned());
+        }
+        // Corners in one place are one: files often repeat them for their normals.
+        let mut named: HashMap<[u64; 3], u32> = HashMap::new();
+        let mut name = |p: DVec3| {
+            let next = named.len() as u32;
+            *named.entry((p + 0.0).to_array().map(f64::to_bits)).or_insert(next)
+        };
+        let mut balance: HashMap<(u32, u32), i32> = HashMap::new();
+        for triangle in &triangles {
+            let [a, b, c] = triangle.map(|i| name(points[i as usize]));
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                *balance.entry((from.min(to), from.max(to))).or_insert(0) += if from < to { 1 } else { -1 };
+            }
+        }
+        let open = balance.values().filter(|&&sum| sum != 0).count();
+        if open > 0 {
+            return Err(format!(
+                "the mesh is open or its faces disagree which side is out: {open} of its {} edges do not join two faces; close it first",
+                balance.len()
+            ));
+        }
+        let mut triangles: Vec<[DVec3; 3]> = triangles.iter().map(|t| t.map(|i| points[i as usize])).collect();
+        let mut boxes = vec![Bounds::EMPTY; (2 * triangles.len()).next_power_of_two()];
+        build(&mut triangles, 0, &mut boxes);
+        Ok(Self { triangles, boxes })
+    }
+
+    /// The box around it.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        self.boxes[0]
+    }
+
+    /// Signed distance of `p` from the surface, negative inside.
+    #[must_use]
+    pub fn distance(&self, p: DVec3) -> f64 {
+        let nearest = Cell::new(f64::INFINITY);
+        self.visit(0, 0, self.triangles.len(), &mut |bounds| bounds.distance(p) < nearest.get(), &mut |triangle| {
+            nearest.set(nearest.get().min(triangle_distance(p, triangle)));
+        });
+        if self.contains(p) { -nearest.get() } else { nearest.get() }
+    }
+
+    fn contains(&self, p: DVec3) -> bool {
+        let mut is_inside = false;
+        let is_ahead = |bounds: &Bounds| {
+            // The slabs of the box along the ray.
+            let (low, high) = ((bounds.min - p) / ASKEW, (bounds.max - p) / ASKEW);
+            low.min(high).max_element().max(0.0) <= low.max(high).min_element()
+        };
+        self.visit(0, 0, self.triangles.len(), &mut |bounds| is_ahead(bounds), &mut |&[a, b, c]| {
+            let (e1, e2, o) = (b - a, c - a, p - a);
+            let n = ASKEW.cross(e2);
+            let det = e1.dot(n);
+            let u = o.dot(n) / det;
+            let q = o.cross(e1);
+            let v = ASKEW.dot(q) / det;
+            is_inside ^= u >= 0.0 && v >= 0.0 && u + v < 1.0 && e2.dot(q) / det > 0.0;
+        });
+        is_inside
+    }
+
+    /// Calls `leaf` with the triangles in every box that `enter` lets through.
+    fn visit(
+        &self,
+        node: usize,
+        first: usize,
+        count: usize,
+        enter: &mut dyn FnMut(&Bounds) -> bool,
+        leaf: &mut dyn FnMut(&[DVec3; 3]),
+    ) {
+        if !enter(&self.boxes[node]) {
+            return;
+        }
+        if count <= LEAF {
+            return self.triangles[first..first + count].iter().for_each(leaf);
+        }
+        let half = count / 2;
+        self.visit(2 * node + 1, first, half, enter, leaf);
+        self.visit(2 * node + 2, first + half, count - half, enter, leaf);
+    }
+}
+
+fn build(triangles: &mut [[DVec3; 3]], node: usize, boxes: &mut Vec<Bounds>) {
+    if boxes.len() <= node {
+        boxes.resize(node + 1, Bounds::EMPTY);
+    }
+    let corner = |p: DVec3| Bounds { min: p, max: p };
+    boxes[node] = triangles.iter().flatten().fold(Bounds::EMPTY, |all, &p| all.union(corner(p)));
+    if triangles.len() <= LEAF {
+        return;
+    }
+    let size = boxes[node].size();
+    let axis = (0..3).fold(0, |best, axis| if size[axis] > size[best] { axis } else { best });
+    let middle = |t: &[DVec3; 3]| t[0][axis] + t[1][axis] + t[2][axis];
+    let half = triangles.len() / 2;
+    triangles.sort_by(|a, b| middle(a).total_cmp(&middle(b)));
+    let (low, high) = triangles.split_at_mut(half);
+    build(low, 2 * node + 1, boxes);
+    build(high, 2 * node + 2, boxes);
+}
+
+/// Distance of `p` from a triangle: of its plane where `p` is over it, else of the nearest edge.
+fn triangle_distance(p: DVec3, &[a, b, c]: &[DVec3; 3]) -> f64 {
+    let n = (b - a).cross(c - a);
+    let is_over = [(a, b), (b, c), (c, a)].iter().all(|&(from, to)| n.cross(to - from).dot(p - from) >= 0.0);
+    if is_over && n != DVec3::ZERO {
+        return (p - a).dot(n).abs() / n.length();
+    }
+    let edges = [(a, b), (b, c), (c, a)].map(|(from, to)| super::shape::segment_distance(p, from, to));
+    edges.into_iter().fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The unit cube's corners, and its faces as triangles with their fronts out.
+    pub fn cube() -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let points = Bounds { min: DVec3::ZERO, max: DVec3::ONE }.corners().to_vec();
+        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        (points, faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect())
+    }
+
+    #[test]
+    fn a_cube_is_a_box() {
+        let (points, triangles) = cube();
+        let mesh = ClosedMesh::new(points.clone(), triangles.clone()).unwrap();
+        for i in 0..1000 {
+            let p = DVec3::new(f64::from(i % 10), f64::from(i / 10 % 10), f64::from(i / 100)) * 0.21 - 0.47;
+            let q = (p - 0.5).abs() - 0.5;
+            let expected = q.max(DVec3::ZERO).length() + q.max_element().min(0.0);
+            assert!((mesh.distance(p) - expected).abs() < 1e-12, "{p}: {} {expected}", mesh.distance(p));
+        }
+        assert!(ClosedMesh::new(points.clone(), triangles[1..].to_vec()).unwrap_err().contains("open"));
+        assert!(ClosedMesh::new(points, Vec::new()).is_err());
+    }
+}

@@ -1,0 +1,304 @@
+//! Shapes as a scene writes them, and how their names and files are looked up.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer};
+
+use super::shape::Solid;
+use super::{Bounds, ClosedMesh, Profile, Shape};
+use crate::math::{DVec2, DVec3, Degrees, Point, Ref, rotation, unknown};
+
+/// A solid as a scene writes it, or several combined.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum SolidSpec {
+    /// All between two corners.
+    Box {
+        /// The corner with the lowest coordinates.
+        min: Point,
+        /// The corner with the highest coordinates.
+        max: Point,
+    },
+    /// A ball; in the plane, a disc.
+    Sphere {
+        /// Its middle.
+        centre: Point,
+        /// Its radius.
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+        radius: f64,
+    },
+    /// An ellipsoid along the axes; in the plane, an ellipse.
+    Ellipsoid {
+        /// Its middle.
+        centre: Point,
+        /// Its half-axes.
+        radii: Point,
+    },
+    /// A cylinder with flat ends.
+    Cylinder {
+        /// Middle of one end.
+        from: Point,
+        /// Middle of the other end.
+        to: Point,
+        /// Its radius.
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+        radius: f64,
+    },
+    /// A cylinder with round ends.
+    Capsule {
+        /// Middle of one end's ball.
+        from: Point,
+        /// Middle of the other end's ball.
+        to: Point,
+        /// Its radius.
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+        radius: f64,
+    },
+    /// A cone with flat ends: whole where one of its radii is 0, truncated where none is.
+    Cone {
+        /// Middle of one end.
+        from: Point,
+        /// Middle of the other end.
+        to: Point,
+        /// The radius at `from` and at `to`.
+        #[schemars(inner(range(min = 0.0, max = 1e6)))]
+        radii: [f64; 2],
+    },
+    /// All of a ball that lies within an angle of a direction (Xu and Mould 2012, section 3.3.2); a hemisphere with 90
+    /// degrees, the whole ball with 180.
+    Sector {
+        /// Its tip, the ball's middle; by default the origin.
+        #[serde(default)]
+        at: Option<Point>,
+        /// The direction of its axis; by default up.
+        #[serde(default)]
+        toward: Option<Point>,
+        /// Half of its opening.
+        #[schemars(range(min = 1.0, max = 180.0))]
+        angle: Degrees,
+        /// The ball's radius.
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+        radius: f64,
+    },
+    /// A sketched stroke turned around an axis (2012, section 3.3.1, Fig. 14). In the SVG file the axis is the straight
+    /// stroke of two points, the outline the other; without an axis the page's left edge is it.
+    Revolve {
+        /// The SVG file, beside the scene.
+        sketch: String,
+        /// Where the lower end of the axis is in space; by default the origin.
+        #[serde(default)]
+        from: Option<Point>,
+        /// Where its upper end is.
+        to: Point,
+    },
+    /// The inside of a closed triangle mesh.
+    Mesh {
+        /// A Wavefront OBJ (y up, as usual there) or PLY file (z up), beside the scene.
+        file: String,
+    },
+    /// Another shape: scaled about the origin, then turned about an axis through it, then moved.
+    Placed {
+        /// The shape.
+        shape: ShapeSpec,
+        /// Its size over what it was.
+        #[serde(default = "one")]
+        #[schemars(range(min = 1e-6, max = 1e6))]
+        scale: f64,
+        /// The axis that it is turned about; by default y, which tilts what is upright towards x.
+        #[serde(default)]
+        about: Option<Point>,
+        /// By how much it is turned, counterclockwise seen against the axis.
+        #[serde(default)]
+        turn: Degrees,
+        /// How far it is moved.
+        #[serde(default)]
+        by: Option<Point>,
+    },
+    /// All that is in at least one of these.
+    Union(Vec<ShapeSpec>),
+    /// All that is in every one of these.
+    Intersection(Vec<ShapeSpec>),
+    /// All that is in the first and in no other.
+    Difference(Vec<ShapeSpec>),
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// A shape as a scene writes it: a solid, or the name of one under `[shape]`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ShapeSpec {
+    /// The name of a shape.
+    Named(Ref<Shape>),
+    /// A shape in place.
+    Inline(Box<SolidSpec>),
+}
+
+impl<'de> Deserialize<'de> for ShapeSpec {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        match serde_json::Value::deserialize(deserializer)? {
+            serde_json::Value::String(name) => Ok(Self::Named(Ref::new(name))),
+            value => SolidSpec::deserialize(value).map(|solid| Self::Inline(Box::new(solid))).map_err(D::Error::custom),
+        }
+    }
+}
+
+impl JsonSchema for ShapeSpec {
+    fn schema_name() -> Cow<'static, str> {
+        "Shape".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let solid = generator.subschema_for::<SolidSpec>();
+        json_schema!({
+            "description": "A shape, or the name of one under `[shape]`.",
+            "anyOf": [{ "type": "string" }, solid]
+        })
+    }
+}
+
+/// The strokes of a sketch: polylines in units of its page's height, x to the right, y up.
+pub type SketchLines = Vec<Vec<DVec2>>;
+
+/// Corners, and triangles as three of them each.
+pub type MeshParts = (Vec<DVec3>, Vec<[u32; 3]>);
+
+/// Where the files that shapes name are read.
+pub trait ShapeFiles {
+    /// The strokes of the sketch `file`.
+    ///
+    /// # Errors
+    /// A sentence with the name and the reason.
+    fn sketch_lines(&self, file: &str) -> Result<SketchLines, String>;
+
+    /// The triangles of the mesh `file`, z up.
+    ///
+    /// # Errors
+    /// A sentence with the name and the reason.
+    fn mesh_parts(&self, file: &str) -> Result<MeshParts, String>;
+}
+
+impl ShapeSpec {
+    /// A box.
+    #[must_use]
+    pub fn of_box(bounds: Bounds) -> Self {
+        Self::Inline(Box::new(SolidSpec::Box { min: Point(bounds.min), max: Point(bounds.max) }))
+    }
+
+    /// The shape, its names looked up in `named` and its files in `files`.
+    ///
+    /// # Errors
+    /// One sentence a mistake: names that lead nowhere or in a circle, sizes that are not positive, files that are no
+    /// outlines or closed meshes.
+    pub fn resolve(&self, named: &BTreeMap<String, Self>, files: &dyn ShapeFiles) -> Result<Shape, String> {
+        Lookup { named, files, within: Vec::new() }.shape(self)
+    }
+}
+
+struct Lookup<'a> {
+    named: &'a BTreeMap<String, ShapeSpec>,
+    files: &'a dyn ShapeFiles,
+    /// The names that are being looked up.
+    within: Vec<String>,
+}
+
+impl Lookup<'_> {
+    fn shape(&mut self, spec: &ShapeSpec) -> Result<Shape, String> {
+        let solid = match spec {
+            ShapeSpec::Inline(solid) => solid,
+            ShapeSpec::Named(Ref { name, .. }) => {
+                if self.within.contains(name) {
+                    return Err(format!("shape `{name}` is made of itself"));
+                }
+                let spec = self.named.get(name).ok_or_else(|| unknown("shape", name, self.named.keys()))?;
+                self.within.push(name.clone());
+                let shape = self.shape(spec);
+                self.within.pop();
+                return shape;
+            }
+        };
+        self.solid(solid)
+    }
+
+    fn all(&mut self, specs: &[ShapeSpec]) -> Result<Vec<Shape>, String> {
+        if specs.is_empty() {
+            return Err("combine at least one shape".to_owned());
+        }
+        specs.iter().map(|spec| self.shape(spec)).collect()
+    }
+
+    fn solid(&mut self, spec: &SolidSpec) -> Result<Shape, String> {
+        let ends = |from: DVec3, to: DVec3, what: &str| {
+            (to - from).try_normalize().ok_or_else(|| format!("{what} needs two different ends"))
+        };
+        Ok(Shape::new(match spec {
+            SolidSpec::Union(of) => Solid::Union(self.all(of)?),
+            SolidSpec::Intersection(of) => Solid::Intersection(self.all(of)?),
+            SolidSpec::Difference(of) => Solid::Difference(self.all(of)?),
+            SolidSpec::Box { min, max } => {
+                if !min.0.cmple(max.0).all() {
+                    return Err(format!("a box needs min below max, not {} and {}", min.0, max.0));
+                }
+                Solid::Box { min: min.0, max: max.0 }
+            }
+            SolidSpec::Ellipsoid { centre, radii } => {
+                // In the plane the third half-axis is not given, and does not matter.
+                let mut r = radii.0;
+                if r.z == 0.0 {
+                    r.z = 1.0;
+                }
+                if !r.cmpgt(DVec3::ZERO).all() {
+                    return Err(format!("an ellipsoid needs half-axes above 0, not {}", radii.0));
+                }
+                Solid::Ellipsoid { centre: centre.0, radii: r }
+            }
+            &SolidSpec::Sphere { centre, radius } => Solid::Sphere { centre: centre.0, radius },
+            &SolidSpec::Cylinder { from, to, radius } => {
+                ends(from.0, to.0, "a cylinder")?;
+                Solid::Cylinder { from: from.0, to: to.0, radius }
+            }
+            &SolidSpec::Capsule { from, to, radius } => Solid::Capsule { from: from.0, to: to.0, radius },
+            &SolidSpec::Cone { from, to, radii } => {
+                ends(from.0, to.0, "a cone")?;
+                return Shape::cone(from.0, to.0, radii).ok_or_else(|| "a cone needs a radius above 0 at one end".to_owned());
+            }
+            SolidSpec::Sector { at, toward, angle, radius } => {
+                let at = at.map_or(DVec3::ZERO, |p| p.0);
+                if angle.0 >= 180.0 {
+                    Solid::Sphere { centre: at, radius: *radius }
+                } else {
+                    let toward = toward.map_or(DVec3::Z, |p| p.0);
+                    let along = toward.try_normalize().ok_or("a sector needs a direction, not the zero vector")?;
+                    let angle = angle.radians();
+                    let side = DVec2::new(libm::sin(angle), libm::cos(angle));
+                    Solid::Sector { at, along, angle, side, radius: *radius }
+                }
+            }
+            SolidSpec::Revolve { sketch, from, to } => {
+                let from = from.map_or(DVec3::ZERO, |p| p.0);
+                let along = ends(from, to.0, "an axis")?;
+                let wrong = |message: String| format!("`{sketch}`: {message}");
+                let outline = Profile::outline(&self.files.sketch_lines(sketch)?, (to.0 - from).length());
+                let profile = outline.and_then(Profile::new).map_err(wrong)?;
+                Solid::Revolved { from, along, profile: Arc::new(profile) }
+            }
+            SolidSpec::Mesh { file } => {
+                let (points, triangles) = self.files.mesh_parts(file)?;
+                let mesh = ClosedMesh::new(points, triangles).map_err(|message| format!("`{file}`: {message}"))?;
+                Solid::Mesh(Arc::new(mesh))
+            }
+            SolidSpec::Placed { shape, scale, about, turn, by } => {
+                let axis = about.map_or(DVec3::Y, |p| p.0);
+                let axis = axis.try_normalize().ok_or("an axis needs a direction, not the zero vector")?;
+                let by = by.map_or(DVec3::ZERO, |p| p.0);
+                return Ok(self.shape(shape)?.placed(*scale, rotation(axis, turn.radians()), by));
+            }
+        }))
+    }
+}
+

@@ -1,0 +1,259 @@
+//! Which scattered nodes are joined: the Yao graph (Yao 1977; the orthant neighbourhood graph of Germer and Strothotte
+//! 2007), or all within a radius.
+
+use rayon::prelude::*;
+
+use super::Sectors;
+use crate::math::DVec3;
+
+/// Cells for each node at most: nodes may lie far apart.
+const MOST_CELLS: f64 = 8.0;
+/// Cells around a node that are searched one by one; what lies farther is found through the pyramid.
+const RINGS: i32 = 2;
+/// Nodes that a thread takes at a time.
+const CHUNK: usize = 1024;
+
+/// Nodes in cells, with a pyramid of boxes over them.
+pub(super) struct Neighbourhood<'a> {
+    nodes: &'a [DVec3],
+    /// Which edges are allowed.
+    owners: Option<&'a [u8]>,
+    origin: DVec3,
+    side: f64,
+    size: [i32; 3],
+    /// Where each cell's nodes start in `members`.
+    starts: Vec<u32>,
+    members: Vec<u32>,
+    /// From the cells up to one box: size, and the boxes of what is in each.
+    levels: Vec<Level>,
+}
+
+struct Level {
+    size: [i32; 3],
+    boxes: Vec<[DVec3; 2]>,
+}
+
+const EMPTY: [DVec3; 2] = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+
+/// The nearest in each sector: distance squared, number.
+type Best = [(f64, u32); Sectors::MOST];
+
+impl<'a> Neighbourhood<'a> {
+    /// `nodes`, in cells with this side or more. Nodes of two different owners other than 0 are never joined.
+    pub fn new(nodes: &'a [DVec3], owners: Option<&'a [u8]>, side: f64) -> Self {
+        let low = nodes.iter().fold(DVec3::INFINITY, |a, &b| a.min(b));
+        let high = nodes.iter().fold(DVec3::NEG_INFINITY, |a, &b| a.max(b));
+        let size = |side: f64| ((high - low) / side).to_array().map(|c| libm::floor(c) + 1.0);
+        let mut side = side;
+        while size(side).iter().product::<f64>() > MOST_CELLS * nodes.len() as f64 + 64.0 {
+            side *= 1.25;
+        }
+        let size = size(side).map(|s| s as i32);
+        let mut own =
+            Self { nodes, owners, origin: low, side, size, starts: Vec::new(), members: Vec::new(), levels: Vec::new() };
+        let count = size.iter().map(|&s| s as usize).product::<usize>();
+        let cells: Vec<u32> = nodes.iter().map(|&p| own.index(own.cell(p)) as u32).collect();
+        // A counting sort keeps the order of nodes within a cell.
+        own.starts = vec![0; count + 1];
+        for &cell in &cells {
+            own.starts[cell as usize + 1] += 1;
+        }
+        for i in 0..count {
+            own.starts[i + 1] += own.starts[i];
+        }
+        own.members = vec![0; nodes.len()];
+        let mut next = own.starts.clone();
+        for (i, &cell) in (0..).zip(&cells) {
+            let place = &mut next[cell as usize];
+            own.members[*place as usize] = i;
+            *place += 1;
+        }
+        // Small graphs are searched whole.
+        if size.iter().any(|&s| s > 2 * RINGS + 1) {
+            own.levels = own.pyramid();
+        }
+        own
+    }
+
+    fn cell(&self, p: DVec3) -> [i32; 3] {
+        let at = ((p - self.origin) / self.side).to_array().map(|c| libm::floor(c) as i32);
+        [0, 1, 2].map(|axis| at[axis].clamp(0, self.size[axis] - 1))
+    }
+
+    fn index(&self, [x, y, z]: [i32; 3]) -> usize {
+        x as usize + self.size[0] as usize * (y as usize + self.size[1] as usize * z as usize)
+    }
+
+    fn pyramid(&self) -> Vec<Level> {
+        let cells = self.starts.windows(2).map(|w| {
+            let members = &self.members[w[0] as usize..w[1] as usize];
+            members.iter().map(|&i| self.nodes[i as usize]).fold(EMPTY, |[a, b], p| [a.min(p), b.max(p)])
+        });
+        let mut levels = vec![Level { size: self.size, boxes: cells.collect() }];
+        while let Some(level) = levels.last().filter(|level| level.boxes.len() > 1) {
+            let size = level.size.map(|s| (s + 1) / 2);
+            let mut boxes = Vec::with_capacity(size.iter().map(|&s| s as usize).product());
+            for z in 0..size[2] {
+                for y in 0..size[1] {
+                    for x in 0..size[0] {
+                        let within = children(level.size, [x, y, z]).map(|i| level.boxes[i]);
+                        boxes.push(within.fold(EMPTY, |[a, b], [c, d]| [a.min(c), b.max(d)]));
+                    }
+                }
+            }
+            levels.push(Level { size, boxes });
+        }
+        levels
+    }
+
+    fn may_join(&self, i: u32, j: u32) -> bool {
+        i != j
+            && self.owners.is_none_or(|owners| {
+                let (a, b) = (owners[i as usize], owners[j as usize]);
+                a == b || a == 0 || b == 0
+            })
+    }
+
+    /// Calls `visit` with the nodes in the cells within `ring` of the cell `at`.
+    fn around(&self, at: [i32; 3], ring: i32, mut visit: impl FnMut(u32)) {
+        let range = |axis: usize| (at[axis] - ring).max(0)..(at[axis] + ring + 1).min(self.size[axis]);
+        let across = range(0);
+        for z in range(2) {
+            for y in range(1) {
+                let row = self.index([0, y, z]);
+                let first = self.starts[row + across.start as usize] as usize;
+                let last = self.starts[row + across.end as usize] as usize;
+                self.members[first..last].iter().for_each(|&j| visit(j));
+            }
+        }
+    }
+
+    /// The nearest node in each sector around node `i`; of several the first.
+    fn nearest(&self, i: u32, sectors: &Sectors) -> Best {
+        let p = self.nodes[i as usize];
+        let at = self.cell(p);
+        let mut best = [(f64::INFINITY, u32::MAX); Sectors::MOST];
+        self.around(at, RINGS, |j| {
+            let d = self.nodes[j as usize] - p;
+            let found = (d.length_squared(), j);
+            let best = &mut best[sectors.of(d)];
+            if found < *best && self.may_join(i, j) {
+                *best = found;
+            }
+        });
+        if self.levels.is_empty() {
+            return best;
+        }
+        // What lies outside the cells searched is at least this far.
+        let low = self.origin + DVec3::from_array(at.map(|c| f64::from(c - RINGS))) * self.side;
+        let high = self.origin + DVec3::from_array(at.map(|c| f64::from(c + RINGS + 1))) * self.side;
+        let flat = |axis: &usize| self.size[*axis] > 1;
+        let safe = (0..3).filter(flat).map(|a| (p[a] - low[a]).min(high[a] - p[a])).fold(f64::INFINITY, f64::min);
+        let safe = (safe * (1.0 - 1e-9)).max(0.0);
+        for (sector, best) in best.iter_mut().enumerate().take(sectors.count()) {
+            if best.0 > safe * safe {
+                self.descend(i, sectors, sector, best);
+            }
+        }
+        best
+    }
+
+    /// Searches the whole pyramid for a nearer node in `sector`.
+    fn descend(&self, i: u32, sectors: &Sectors, sector: usize, best: &mut (f64, u32)) {
+        let p = self.nodes[i as usize];
+        let mut waiting = vec![(self.levels.len() - 1, [0_i32; 3], 0_usize)];
+        while let Some((rank, at, index)) = waiting.pop() {
+            let [low, high] = self.levels[rank].boxes[index];
+            let off = (low - p).max(p - high).max(DVec3::ZERO).length_squared();
+            if low.x > high.x || off > best.0 || !sectors.may_hold(sector, low - p, high - p) {
+                continue;
+            }
+            if rank == 0 {
+                for &j in &self.members[self.starts[index] as usize..self.starts[index + 1] as usize] {
+                    let d = self.nodes[j as usize] - p;
+                    let found = (d.length_squared(), j);
+                    if found < *best && self.may_join(i, j) && sectors.of(d) == sector {
+                        *best = found;
+                    }
+                }
+                continue;
+            }
+            let below = &self.levels[rank - 1];
+            // The nearest last, so that it is looked at first.
+            let mut next: Vec<(f64, [i32; 3], usize)> = children(below.size, at)
+                .map(|index| {
+                    let [low, high] = below.boxes[index];
+                    let (x, rest) = (index as i32 % below.size[0], index as i32 / below.size[0]);
+                    let place = [x, rest % below.size[1], rest / below.size[1]];
+                    ((low - p).max(p - high).max(DVec3::ZERO).length_squared(), place, index)
+                })
+                .collect();
+            next.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.2.cmp(&a.2)));
+            waiting.extend(next.into_iter().map(|(_, place, index)| (rank - 1, place, index)));
+        }
+    }
+
+    /// For each node the nearest in each sector: `sectors.count()` numbers a node, `u32::MAX` where there is none.
+    pub fn yao(&self, sectors: &Sectors) -> Vec<u32> {
+        let count = sectors.count();
+        let mut found = vec![u32::MAX; self.nodes.len() * count];
+        let fill = |first: usize, rows: &mut [u32]| {
+            for (row, i) in rows.chunks_mut(count).zip(first as u32..) {
+                let best = self.nearest(i, sectors);
+                row.iter_mut().zip(best).for_each(|(to, (_, j))| *to = j);
+            }
+        };
+        if self.nodes.len() <= 2 * CHUNK {
+            fill(0, &mut found);
+        } else {
+            let chunks = found.par_chunks_mut(CHUNK * count).enumerate();
+            chunks.for_each(|(chunk, rows)| fill(chunk * CHUNK, rows));
+        }
+        found
+    }
+
+    /// For each node those with a higher number within `reach`, which is at most the cells' side.
+    pub fn within(&self, reach: f64) -> Vec<Vec<u32>> {
+        let one = |i: u32| {
+            let p = self.nodes[i as usize];
+            let mut found = Vec::new();
+            self.around(self.cell(p), 1, |j| {
+                if j > i && self.may_join(i, j) && self.nodes[j as usize].distance_squared(p) <= reach * reach {
+                    found.push(j);
+                }
+            });
+            found.sort_unstable();
+            found
+        };
+        (0..self.nodes.len() as u32).into_par_iter().map(one).collect()
+    }
+
+    /// The node nearest to `p`; of several the first.
+    pub fn nearest_to(&self, p: DVec3) -> Option<u32> {
+        let mut best = (f64::INFINITY, u32::MAX);
+        let at = self.cell(p);
+        for ring in 0..self.size.into_iter().max().unwrap_or(1) {
+            // Cells of this ring and beyond are at least this far.
+            let far = f64::from(ring - 1) * self.side;
+            if ring > 1 && best.0 < far * far {
+                break;
+            }
+            self.around(at, ring, |j| best = min(best, (self.nodes[j as usize].distance_squared(p), j)));
+        }
+        (best.1 != u32::MAX).then_some(best.1)
+    }
+}
+
+fn min(a: (f64, u32), b: (f64, u32)) -> (f64, u32) {
+    if b < a { b } else { a }
+}
+
+/// The cells of a level of this size that one of the level above covers.
+fn children(size: [i32; 3], at: [i32; 3]) -> impl Iterator<Item = usize> {
+    let range = move |axis: usize| 2 * at[axis]..(2 * at[axis] + 2).min(size[axis]);
+    range(2).flat_map(move |z| {
+        range(1).flat_map(move |y| {
+            range(0).map(move |x| x as usize + size[0] as usize * (y as usize + size[1] as usize * z as usize))
+        })
+    })
+}

@@ -1,0 +1,375 @@
+//! Poisson-disc nodes: no two nearer than the spacing, and no room for another.
+//!
+//! Space is cut into cells so small that each holds one node at most (Bridson 2007). Cells are visited once, in random
+//! order: darts are thrown into a cell, and where they miss it is cut up and searched until a place is found or all of
+//! it is known to be taken or outside (after Ebeida et al. 2012). A cell so visited never has room again.
+
+use rand::RngExt;
+use rayon::prelude::*;
+
+use super::scatter::MOST_NODES;
+use super::{ScatterError, scatter_estimate};
+use crate::math::{DVec3, Stream, mix};
+
+/// Cells along a side of a block. Blocks are filled one after the other or, those that do not touch, side by side.
+const BLOCK: i32 = 16;
+/// Cells around a block in which nodes matter to it: a cell is 1 / sqrt 3 (in the plane 1 / sqrt 2) of the spacing.
+const HALO: i32 = 2;
+/// Darts thrown into a cell before it is searched.
+const DARTS: u32 = 3;
+/// A cell is cut in halves at most this often: what is then left is a millionth of a spacing wide.
+const DEEPEST: u32 = 20;
+/// The last of the nodes to be visited: no cell needs more pieces, but degenerate shapes might.
+const MOST_PIECES: u32 = 20_000;
+
+/// Where nodes may be.
+pub trait Region: Sync {
+    /// A number of the sign of the distance from the region, negative inside, nowhere larger than that.
+    fn margin(&self, p: DVec3) -> f64;
+
+    /// The corners of a box around it.
+    fn bounds(&self) -> [DVec3; 2];
+}
+
+/// Cells in the box around a region.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cells {
+    origin: DVec3,
+    /// Side of a cell.
+    side: f64,
+    size: [i32; 3],
+    is_plane: bool,
+}
+
+impl Cells {
+    pub fn new(bounds: [DVec3; 2], spacing: f64, is_plane: bool) -> Self {
+        // A hair less, so that two nodes in opposite corners are too near for rounding to part them.
+        let side = spacing * (1.0 - 1e-9) / libm::sqrt(if is_plane { 2.0 } else { 3.0 });
+        let extent = (bounds[1] - bounds[0]) / side;
+        let mut size = extent.to_array().map(|e| (libm::floor(e) as i32).saturating_add(1).max(1));
+        if is_plane {
+            size[2] = 1;
+        }
+        let origin = if is_plane { bounds[0].with_z(0.0) } else { bounds[0] };
+        Self { origin, side, size, is_plane }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> u64 {
+        self.size.iter().map(|&s| s as u64).product()
+    }
+
+    fn of(&self, p: DVec3) -> Option<[i32; 3]> {
+        let at = ((p - self.origin) / self.side).to_array().map(|c| libm::floor(c) as i32);
+        let at = if self.is_plane { [at[0], at[1], 0] } else { at };
+        (0..3).all(|axis| (0..self.size[axis]).contains(&at[axis])).then_some(at)
+    }
+
+    fn index(&self, [x, y, z]: [i32; 3]) -> usize {
+        x as usize + self.size[0] as usize * (y as usize + self.size[1] as usize * z as usize)
+    }
+}
+
+/// Nodes in `region`, `spacing` apart and with no room for another: first those of `fixed` that are not nearer than that
+/// to one before (they may lie anywhere in the box), then random ones from `stream`.
+pub(super) fn poisson(
+    region: &dyn Region,
+    cells: &Cells,
+    spacing: f64,
+    fixed: &[DVec3],
+    stream: &Stream,
+) -> Vec<DVec3> {
+    // What is in each cell: the number of a node plus one.
+    let mut held = vec![0_u32; cells.count() as usize];
+    let mut nodes: Vec<DVec3> = Vec::new();
+    for &p in fixed {
+        let Some(at) = cells.of(p) else { continue };
+        if nodes.iter().all(|q| q.distance(p) >= spacing) {
+            nodes.push(p);
+            held[cells.index(at)] = nodes.len() as u32;
+        }
+    }
+    let blocks = cells.size.map(|s| (s + BLOCK - 1) / BLOCK);
+    // Blocks of equal parity do not touch: eight phases.
+    for phase in 0..8 {
+        let every = |axis: usize| (0..blocks[axis]).filter(move |b| b & 1 == phase >> axis & 1);
+        let places: Vec<[i32; 3]> =
+            every(2).flat_map(|z| every(1).flat_map(move |y| every(0).map(move |x| [x, y, z]))).collect();
+        let fill = |&place: &[i32; 3]| Block::new(cells, spacing, place, &held, &nodes).fill(region, stream);
+        let found: Vec<Vec<DVec3>> =
+            if places.len() > 1 { places.par_iter().map(fill).collect() } else { places.iter().map(fill).collect() };
+        for p in found.into_iter().flatten() {
+            nodes.push(p);
+            if let Some(at) = cells.of(p) {
+                held[cells.index(at)] = nodes.len() as u32;
+            }
+        }
+    }
+    nodes
+}
+
+/// Nodes alone, in the plane or in space: `spacing` apart and with no room for another.
+///
+/// # Errors
+/// [`ScatterError::TooMany`].
+pub fn poisson_points(
+    region: &dyn Region,
+    spacing: f64,
+    is_plane: bool,
+    stream: &Stream,
+) -> Result<Vec<DVec3>, ScatterError> {
+    let estimate = scatter_estimate(region.bounds(), spacing, is_plane);
+    if estimate.is_nan() || estimate > MOST_NODES {
+        return Err(ScatterError::TooMany(estimate));
+    }
+    Ok(poisson(region, &Cells::new(region.bounds(), spacing, is_plane), spacing, &[], stream))
+}
+
+/// A block of cells, and what is around it.
+struct Block<'a> {
+    cells: &'a Cells,
+    /// The spacing squared.
+    apart: f64,
+    /// The lowest cell, halo excluded.
+    low: [i32; 3],
+    /// Cells along each axis, halo excluded.
+    size: [i32; 3],
+    /// Cells in a row and in a layer, halo included.
+    strides: [usize; 2],
+    held: Vec<u32>,
+    /// For each row of cells, which hold a node, and which are known to have no room.
+    rows: Vec<[u32; 2]>,
+    nodes: Vec<DVec3>,
+    /// Where the new nodes begin.
+    first: usize,
+    /// Pieces that wait to be searched.
+    waiting: Vec<Piece>,
+}
+
+/// A place in a cell that is being searched.
+#[derive(Clone, Copy)]
+struct Piece {
+    low: DVec3,
+    side: f64,
+    depth: u32,
+    /// Is all of it in the region?
+    is_inside: bool,
+}
+
+impl<'a> Block<'a> {
+    fn new(cells: &'a Cells, spacing: f64, place: [i32; 3], held: &[u32], nodes: &[DVec3]) -> Self {
+        let low = place.map(|b| b * BLOCK);
+        let size = [0, 1, 2].map(|axis| BLOCK.min(cells.size[axis] - low[axis]));
+        let width = size.map(|s| (s + 2 * HALO) as usize);
+        let mut own =
+            Self {
+                cells,
+                apart: spacing * spacing,
+                low,
+                size,
+                strides: [width[0], width[0] * width[1]],
+                held: vec![0; width[0] * width[1] * width[2]],
+                rows: vec![[0; 2]; width[1] * width[2]],
+                nodes: Vec::new(),
+                first: 0,
+                waiting: Vec::new(),
+            };
+        let range = |axis: usize| (low[axis] - HALO).max(0)..(low[axis] + size[axis] + HALO).min(cells.size[axis]);
+        for z in range(2) {
+            for y in range(1) {
+                let row = cells.index([0, y, z]);
+                for x in range(0) {
+                    let node = held[row + x as usize];
+                    if node != 0 {
+                        own.put([x - low[0], y - low[1], z - low[2]], nodes[node as usize - 1]);
+                    }
+                }
+            }
+        }
+        own.first = own.nodes.len();
+        own
+    }
+
+    /// Puts a node into the cell `at`, and marks the cells around it that it leaves no room in.
+    fn put(&mut self, at: [i32; 3], p: DVec3) {
+        self.nodes.push(p);
+        let index = self.index(at);
+        self.held[index] = self.nodes.len() as u32;
+        let row = index / self.strides[0];
+        self.rows[row][0] |= 1 << (at[0] + HALO);
+        let side = self.cells.side;
+        let own = self.low_corner([0, 1, 2].map(|axis| at[axis] + self.low[axis]));
+        // How far the far side of the cell before, of this and of the next is, squared, along each axis.
+        let far = [0, 1, 2].map(|axis| {
+            let d = p[axis] - own[axis];
+            [d + side, d.max(side - d), 2.0 * side - d].map(|far| far * far)
+        });
+        let deep = if self.cells.is_plane { 0..1 } else { -1..2 };
+        for dz in deep {
+            let z = if self.cells.is_plane { 0.0 } else { far[2][(dz + 1) as usize] };
+            for dy in -1..2_i32 {
+                let (y, z_at) = (at[1] + dy, at[2] + dz);
+                if !(-HALO..self.size[1] + HALO).contains(&y) || !(-HALO..self.size[2] + HALO).contains(&z_at) {
+                    continue;
+                }
+                let row = self.index([0, y, z_at]) / self.strides[0];
+                for dx in -1..2_i32 {
+                    let across = far[0][(dx + 1) as usize] + far[1][(dy + 1) as usize] + z;
+                    if across < self.apart && (-HALO..self.size[0] + HALO).contains(&(at[0] + dx)) {
+                        self.rows[row][1] |= 1 << (at[0] + dx + HALO);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The index of a cell, counted from the block's lowest.
+    fn index(&self, [x, y, z]: [i32; 3]) -> usize {
+        (x + HALO) as usize + self.strides[0] * (y + HALO) as usize + self.strides[1] * (z + HALO) as usize
+    }
+
+    /// Visits every cell, and returns the nodes found.
+    fn fill(mut self, region: &dyn Region, stream: &Stream) -> Vec<DVec3> {
+        let half = self.cells.side * if self.cells.is_plane { 0.707_107 } else { 0.866_026 };
+        let mut order: Vec<(u64, [i16; 3], bool)> = Vec::new();
+        for z in 0..self.size[2] {
+            for y in 0..self.size[1] {
+                for x in 0..self.size[0] {
+                    if !self.has_room([x, y, z]) {
+                        continue;
+                    }
+                    let at = [x + self.low[0], y + self.low[1], z + self.low[2]];
+                    let margin = region.margin(self.middle(at));
+                    if margin <= half {
+                        let name = self.cells.index(at) as u64;
+                        order.push((mix(stream.key() ^ mix(name)), [x as i16, y as i16, z as i16], margin <= -half));
+                    }
+                }
+            }
+        }
+        order.sort_unstable_by_key(|&(key, at, _)| (key, at));
+        let mut near = Vec::with_capacity(64);
+        for (key, at, is_inside) in order {
+            let at = at.map(i32::from);
+            if !self.has_room(at) {
+                continue;
+            }
+            self.gather(at, &mut near);
+            let low = self.low_corner([at[0] + self.low[0], at[1] + self.low[1], at[2] + self.low[2]]);
+            let piece = Piece { low, side: self.cells.side, depth: 0, is_inside };
+            if let Some(p) = self.search(region, &near, piece, stream.nth(key)) {
+                self.put(at, p);
+            }
+        }
+        self.nodes.split_off(self.first)
+    }
+
+    /// Is the cell not known to be taken?
+    fn has_room(&self, at: [i32; 3]) -> bool {
+        self.rows[self.index(at) / self.strides[0]][1] >> (at[0] + HALO) & 1 == 0
+    }
+
+    fn low_corner(&self, at: [i32; 3]) -> DVec3 {
+        let [x, y, z] = at.map(f64::from);
+        self.cells.origin + DVec3::new(x, y, z) * self.cells.side
+    }
+
+    fn middle(&self, at: [i32; 3]) -> DVec3 {
+        self.middle_of(self.low_corner(at), self.cells.side)
+    }
+
+    fn middle_of(&self, low: DVec3, side: f64) -> DVec3 {
+        let middle = low + side * 0.5;
+        if self.cells.is_plane { middle.with_z(0.0) } else { middle }
+    }
+
+    /// The nodes that are too near to something in the cell `at`, those nearest to its middle first: they are the likeliest
+    /// to leave no room in a piece of it.
+    fn gather(&self, at: [i32; 3], near: &mut Vec<DVec3>) {
+        near.clear();
+        let half = self.cells.side * 0.5;
+        let middle = self.middle([0, 1, 2].map(|axis| at[axis] + self.low[axis]));
+        let deep = if self.cells.is_plane { 0 } else { HALO };
+        for dz in -deep..=deep {
+            for dy in -HALO..=HALO {
+                let row = self.index([-HALO, at[1] + dy, at[2] + dz]);
+                // Five cells of the row, from the one two before.
+                let mut held = self.rows[row / self.strides[0]][0] >> at[0] & 0b11111;
+                while held != 0 {
+                    let cell = row + at[0] as usize + held.trailing_zeros() as usize;
+                    let p = self.nodes[self.held[cell] as usize - 1];
+                    let off = ((p - middle).abs() - half).max(DVec3::ZERO);
+                    if off.length_squared() < self.apart {
+                        near.push(p);
+                    }
+                    held &= held - 1;
+                }
+            }
+        }
+        near.sort_unstable_by(|a, b| middle.distance_squared(*a).total_cmp(&middle.distance_squared(*b)));
+    }
+
+    /// A place in `piece` that is in the region and has room, if there is one.
+    fn search(&mut self, region: &dyn Region, near: &[DVec3], whole: Piece, mut random: Stream) -> Option<DVec3> {
+        let (apart, is_plane) = (self.apart, self.cells.is_plane);
+        let is_free = |p: DVec3| near.iter().all(|q| q.distance_squared(p) >= apart);
+        let dart = |piece: &Piece, random: &mut Stream| {
+            let [u, v, w]: [f64; 3] = std::array::from_fn(|_| random.random());
+            let p = piece.low + DVec3::new(u, v, w) * piece.side;
+            let p = if is_plane { p.with_z(0.0) } else { p };
+            (is_free(p) && (piece.is_inside || region.margin(p) <= 0.0)).then_some(p)
+        };
+        if self.is_taken(near, &whole) {
+            return None;
+        }
+        for _ in 0..DARTS {
+            if let Some(p) = dart(&whole, &mut random) {
+                return Some(p);
+            }
+        }
+        self.waiting.clear();
+        self.waiting.push(whole);
+        let mut pieces = 0;
+        while let Some(piece) = self.waiting.pop() {
+            pieces += 1;
+            if piece.depth == DEEPEST || pieces > MOST_PIECES {
+                continue;
+            }
+            let side = piece.side * 0.5;
+            let half = side * if self.cells.is_plane { 0.707_107 } else { 0.866_026 };
+            let children = if self.cells.is_plane { 4 } else { 8 };
+            let turn = random.random::<u64>() % children;
+            for i in 0..children {
+                let child = i ^ turn;
+                let corner = DVec3::new((child & 1) as f64, (child >> 1 & 1) as f64, (child >> 2) as f64);
+                let mut part = Piece { low: piece.low + corner * side, side, depth: piece.depth + 1, ..piece };
+                if self.is_taken(near, &part) {
+                    continue;
+                }
+                if !part.is_inside {
+                    let margin = region.margin(self.middle_of(part.low, side));
+                    if margin > half {
+                        continue;
+                    }
+                    part.is_inside = margin <= -half;
+                }
+                if let Some(p) = dart(&part, &mut random) {
+                    return Some(p);
+                }
+                self.waiting.push(part);
+            }
+        }
+        None
+    }
+
+    /// Is all of `piece` too near to one of the nodes?
+    fn is_taken(&self, near: &[DVec3], piece: &Piece) -> bool {
+        let half = piece.side * 0.5;
+        let middle = self.middle_of(piece.low, piece.side);
+        near.iter().any(|&q| {
+            let far = (q - middle).abs() + half;
+            let far = if self.cells.is_plane { far.with_z(0.0) } else { far };
+            far.length_squared() < self.apart
+        })
+    }
+}

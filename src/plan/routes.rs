@@ -1,0 +1,132 @@
+//! Least-cost paths over graphs whose edges are stored: a radix heap (Ahuja et al. 1990), whose time is linear in the
+//! edges but for the few times that a node moves to a nearer bucket.
+
+use crate::graph::{Node, Scatter};
+use crate::math::{Cancelled, Progress};
+
+/// Not reached.
+const FAR: u64 = u64::MAX;
+/// The predecessor of a generator.
+const NONE: u32 = u32::MAX;
+/// Nodes settled between two looks at whether the work was cancelled.
+const PAUSE: usize = 1 << 16;
+
+/// Least-cost paths: a cost and a predecessor for each node.
+pub struct Routes<'g> {
+    graph: &'g Scatter,
+    costs: Vec<u64>,
+    before: Vec<u32>,
+    settled: usize,
+}
+
+/// A queue whose least key never falls below the last one taken.
+struct RadixHeap {
+    last: u64,
+    /// Keys by the highest bit in which they differ from the last one.
+    buckets: Vec<Vec<(u64, u32)>>,
+}
+
+impl RadixHeap {
+    fn new() -> Self {
+        Self { last: 0, buckets: vec![Vec::new(); 65] }
+    }
+
+    fn push(&mut self, key: u64, node: u32) {
+        let bucket = 64 - (key ^ self.last).leading_zeros();
+        self.buckets[bucket as usize].push((key, node));
+    }
+
+    fn pop(&mut self) -> Option<(u64, u32)> {
+        if self.buckets[0].is_empty() {
+            let first = self.buckets.iter().position(|bucket| !bucket.is_empty())?;
+            let keys = std::mem::take(&mut self.buckets[first]);
+            self.last = keys.iter().map(|&(key, _)| key).min()?;
+            for (key, node) in keys {
+                self.push(key, node);
+            }
+        }
+        self.buckets[0].pop()
+    }
+}
+
+/// Least costs over `graph` from `generators`, each of which starts with the fixed-point cost beside it, until all of
+/// `wanted` are settled or nothing is left; with nothing wanted, to every node. Equal costs go to the predecessor with
+/// the lower number.
+///
+/// # Errors
+/// [`Cancelled`] by `progress`.
+pub fn routes<'g>(
+    graph: &'g Scatter,
+    generators: &[(Node, u64)],
+    wanted: &[Node],
+    progress: &Progress,
+) -> Result<Routes<'g>, Cancelled> {
+    let mut costs = vec![FAR; graph.len()];
+    let mut before = vec![NONE; graph.len()];
+    let mut is_wanted = vec![false; if wanted.is_empty() { 0 } else { graph.len() }];
+    let mut missing = 0_usize;
+    for node in wanted {
+        missing += usize::from(!std::mem::replace(&mut is_wanted[node.0 as usize], true));
+    }
+    let mut queue = RadixHeap::new();
+    for &(node, cost) in generators {
+        if cost < costs[node.0 as usize] {
+            costs[node.0 as usize] = cost;
+            queue.push(cost, node.0);
+        }
+    }
+    let mut settled = 0;
+    while let Some((cost, node)) = queue.pop() {
+        if cost > costs[node as usize] {
+            continue;
+        }
+        settled += 1;
+        if !wanted.is_empty() && std::mem::take(&mut is_wanted[node as usize]) {
+            missing -= 1;
+            if missing == 0 {
+                break;
+            }
+        }
+        if settled % PAUSE == 0 {
+            progress.report("plan", settled as f64 / graph.len() as f64)?;
+        }
+        for &(Node(other), weight) in graph.edges(Node(node)) {
+            let new = cost + u64::from(weight);
+            let old = &mut costs[other as usize];
+            if new < *old {
+                *old = new;
+                before[other as usize] = node;
+                queue.push(new, other);
+            } else if new == *old && before[other as usize] != NONE && node < before[other as usize] {
+                before[other as usize] = node;
+            }
+        }
+    }
+    Ok(Routes { graph, costs, before, settled })
+}
+
+impl<'g> Routes<'g> {
+    /// The graph that was planned over.
+    #[must_use]
+    pub fn graph(&self) -> &'g Scatter {
+        self.graph
+    }
+
+    /// How many nodes have their final cost.
+    #[must_use]
+    pub fn settled(&self) -> usize {
+        self.settled
+    }
+
+    /// The least cost of `node`, fixed-point ([`Scatter::real`]), or `None` if it was not reached.
+    #[must_use]
+    pub fn cost(&self, node: Node) -> Option<u64> {
+        Some(self.costs[node.0 as usize]).filter(|&cost| cost != FAR)
+    }
+
+    /// The nodes from `node` back to its generator, both included, with their costs.
+    pub fn path(&self, node: Node) -> impl Iterator<Item = (Node, u64)> + '_ {
+        let next = |&Node(at): &Node| Some(Node(self.before[at as usize])).filter(|&Node(to)| to != NONE);
+        std::iter::successors(Some(node), next).map(|at| (at, self.costs[at.0 as usize]))
+    }
+}

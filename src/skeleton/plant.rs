@@ -1,0 +1,353 @@
+//! Plants: what several steps grew, one from the ends of another, as one forest. Widths that follow whole ways from
+//! the tips to the root, and the form of limbs, are given here.
+
+use std::collections::HashMap;
+
+use super::{ByLength, Form, Path, Pipe, Skeleton, SkeletonNode, Width};
+use crate::math::{DVec3, power};
+
+/// The unit of widths by length, as a share of the longest way, where none is given.
+const UNIT: f64 = 1e-3;
+
+/// What one step contributes to a plant.
+#[derive(Clone, Debug)]
+pub struct Part<'a> {
+    /// What it grew.
+    pub skeleton: &'a Skeleton,
+    /// Its width.
+    pub width: &'a Width,
+    /// The level of its first round.
+    pub first_level: u16,
+}
+
+/// A forest made of parts. Parents precede children.
+#[derive(Clone, Debug)]
+pub struct Plant {
+    pub(super) nodes: Vec<PlantNode>,
+    /// End, z or other number of its width, and the path as its part has it.
+    pub(super) ends: Vec<PlantEnd>,
+    pub(super) parts: usize,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlantNode {
+    pub node: SkeletonNode,
+    /// The part that it belongs to.
+    pub part: u32,
+    /// Length of the longest way from here to a tip.
+    pub reach: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlantEnd {
+    pub part: u32,
+    pub path: Path,
+    /// The exponent of the ways that start here.
+    z: f64,
+}
+
+impl Plant {
+    /// Puts the parts together: the trees of a later one grow from where an earlier one has a node.
+    #[must_use]
+    pub fn new(parts: &[Part<'_>]) -> Self {
+        let mut plant = Self { nodes: Vec::new(), ends: Vec::new(), parts: parts.len() };
+        let mut known: HashMap<[u64; 3], u32> = HashMap::new();
+        for (index, part) in (0..).zip(parts) {
+            // A tree's root that grows from a node is that node.
+            let mut renamed: Vec<u32> = Vec::with_capacity(part.skeleton.nodes.len());
+            let mut fresh = Vec::new();
+            for node in &part.skeleton.nodes {
+                let key = node.position.to_array().map(f64::to_bits);
+                if let (None, Some(&at)) = (node.parent, known.get(&key)) {
+                    renamed.push(at);
+                    continue;
+                }
+                let at = plant.nodes.len() as u32;
+                let parent = node.parent.map(|p| renamed[p as usize]);
+                plant.nodes.push(PlantNode { node: SkeletonNode { parent, ..*node }, part: index, reach: 0.0 });
+                renamed.push(at);
+                fresh.push((key, at));
+            }
+            for (key, at) in fresh {
+                known.entry(key).or_insert(at);
+            }
+            for path in &part.skeleton.paths {
+                let end = renamed[path.end as usize];
+                let level = part.skeleton.nodes[path.end as usize].level;
+                let z = match part.width {
+                    Width::Length(ByLength { z, .. }) => z.at(u32::from(level.saturating_sub(part.first_level))),
+                    Width::Pipe(_) | Width::Taper(_) | Width::Constant(_) => 1.0,
+                };
+                let path = Path { end, root: renamed[path.root as usize], ..*path };
+                plant.ends.push(PlantEnd { part: index, path, z });
+            }
+        }
+        plant
+    }
+
+    /// Length of the segment that ends at node `i`.
+    pub(super) fn step(&self, i: usize) -> f64 {
+        let node = &self.nodes[i].node;
+        node.parent.map_or(0.0, |p| (node.position - self.nodes[p as usize].node.position).length())
+    }
+
+    /// Gives every node its radius, by the width of the part where the plant starts.
+    pub fn thicken(&mut self, width: &Width) {
+        let lengths: Vec<f64> = (0..self.nodes.len()).map(|i| self.step(i)).collect();
+        match width {
+            Width::Length(length) => self.by_length(length, &lengths),
+            Width::Pipe(pipe) => self.by_pipe(pipe, &lengths),
+            Width::Taper(_) | Width::Constant(_) => {}
+        }
+    }
+
+    /// For each node the length of the longest way to one of `ends`, if there is one.
+    fn ways(&self, ends: impl Iterator<Item = u32>, lengths: &[f64]) -> Vec<Option<f64>> {
+        let mut ways: Vec<Option<f64>> = vec![None; self.nodes.len()];
+        ends.for_each(|end| ways[end as usize] = Some(0.0));
+        for i in (0..self.nodes.len()).rev() {
+            if let (Some(way), Some(parent)) = (ways[i], self.nodes[i].node.parent) {
+                let longer = way + lengths[i];
+                let slot = &mut ways[parent as usize];
+                *slot = Some(slot.map_or(longer, |old| if longer > old { longer } else { old }));
+            }
+        }
+        ways
+    }
+
+    /// `s^z` (Xu and Mould 2012, section 3.2), z by the level where the trace starts, scaled to `root`; the larger stays.
+    fn by_length(&mut self, spec: &ByLength, lengths: &[f64]) {
+        let root = spec.root.unwrap_or(1.0);
+        let all = self.ways(self.ends.iter().map(|end| end.path.end), lengths);
+        let longest = all.iter().flatten().fold(f64::MIN_POSITIVE, |a, &b| f64::max(a, b));
+        let unit = spec.unit.unwrap_or(longest * UNIT);
+        for (node, way) in self.nodes.iter_mut().zip(&all) {
+            node.reach = way.unwrap_or(0.0);
+            node.node.radius = 0.0;
+        }
+        // One pass for each exponent.
+        let mut exponents: Vec<f64> = self.ends.iter().map(|end| end.z).collect();
+        exponents.sort_by(f64::total_cmp);
+        exponents.dedup();
+        for z in exponents {
+            let ends = self.ends.iter().filter(|end| end.z == z).map(|end| end.path.end);
+            let ways = self.ways(ends, lengths);
+            for (node, way) in self.nodes.iter_mut().zip(ways) {
+                let Some(s) = way else { continue };
+                let radius = power(s / unit, z);
+                if radius > node.node.radius {
+                    node.node.radius = radius;
+                }
+            }
+        }
+        let widest = self.nodes.iter().map(|n| n.node.radius).fold(f64::MIN_POSITIVE, f64::max);
+        for node in &mut self.nodes {
+            node.node.radius = f64::max(node.node.radius * (root / widest), spec.tip.unwrap_or(0.0));
+        }
+    }
+
+    fn by_pipe(&mut self, spec: &Pipe, lengths: &[f64]) {
+        let all = self.ways(self.ends.iter().map(|end| end.path.end), lengths);
+        let mut area = vec![0.0; self.nodes.len()];
+        for i in (0..self.nodes.len()).rev() {
+            if area[i] == 0.0 {
+                area[i] = 1.0;
+            }
+            if let Some(parent) = self.nodes[i].node.parent {
+                area[parent as usize] += area[i];
+            }
+        }
+        let whole = area.iter().copied().fold(1.0, f64::max);
+        let tip = spec.tip.unwrap_or(0.0);
+        let root = spec.root.unwrap_or(1.0);
+        for ((node, area), way) in self.nodes.iter_mut().zip(area).zip(all) {
+            node.reach = way.unwrap_or(0.0);
+            node.node.radius = f64::max(root * power(area / whole, 1.0 / spec.power), tip);
+        }
+    }
+
+    /// For each node the child that continues its limb: the thickest, then the one that reaches farthest, then the first.
+    pub(super) fn main_children(&self) -> Vec<Option<u32>> {
+        let mut main: Vec<Option<u32>> = vec![None; self.nodes.len()];
+        let key = |i: u32| {
+            let node = &self.nodes[i as usize];
+            (node.node.radius, node.reach + self.step(i as usize))
+        };
+        for i in 0..self.nodes.len() as u32 {
+            let Some(parent) = self.nodes[i as usize].node.parent else { continue };
+            let main = &mut main[parent as usize];
+            if main.is_none_or(|old| key(i) > key(old)) {
+                *main = Some(i);
+            }
+        }
+        main
+    }
+
+    /// Puts parents before children again: limbs stay together, the main child first.
+    pub(super) fn reorder(&mut self) {
+        let mut children: Vec<Vec<u32>> = vec![Vec::new(); self.nodes.len()];
+        let mut order: Vec<u32> = Vec::with_capacity(self.nodes.len());
+        let mut waiting: Vec<u32> = Vec::new();
+        for (i, node) in (0_u32..).zip(&self.nodes) {
+            match node.node.parent {
+                Some(parent) => children[parent as usize].push(i),
+                None => waiting.push(i),
+            }
+        }
+        waiting.reverse();
+        while let Some(i) = waiting.pop() {
+            order.push(i);
+            waiting.extend(children[i as usize].iter().rev());
+        }
+        self.keep(&order);
+    }
+
+    /// Keeps the nodes in `order` alone, named by their place in it; parents and ends must be among them.
+    pub(super) fn keep(&mut self, order: &[u32]) {
+        let mut renamed = vec![u32::MAX; self.nodes.len()];
+        order.iter().zip(0..).for_each(|(&old, new)| renamed[old as usize] = new);
+        self.nodes = order.iter().map(|&old| self.nodes[old as usize]).collect();
+        for node in &mut self.nodes {
+            node.node.parent = node.node.parent.map(|p| renamed[p as usize]);
+        }
+        for end in &mut self.ends {
+            end.path.end = renamed[end.path.end as usize];
+            end.path.root = renamed[end.path.root as usize];
+        }
+    }
+
+    /// Gives limbs their form.
+    pub fn shape(&mut self, form: &Form, width: &Width) {
+        form.apply(self, width);
+    }
+
+    /// The parts again. A tree of a later part starts with a node of its own where it leaves an earlier one.
+    #[must_use]
+    pub fn split(self) -> Vec<Skeleton> {
+        let mut skeletons: Vec<Skeleton> = vec![Skeleton::default(); self.parts];
+        let mut renamed: Vec<u32> = Vec::with_capacity(self.nodes.len());
+        // The copy of an earlier part's node in a later one.
+        let mut copies: HashMap<(u32, u32), u32> = HashMap::new();
+        let mut copy = |skeletons: &mut Vec<Skeleton>, part: u32, at: u32, nodes: &[PlantNode]| {
+            *copies.entry((part, at)).or_insert_with(|| {
+                let list = &mut skeletons[part as usize].nodes;
+                list.push(SkeletonNode { parent: None, ..nodes[at as usize].node });
+                list.len() as u32 - 1
+            })
+        };
+        for PlantNode { node, part, .. } in &self.nodes {
+            let parent = node.parent.and_then(|p| {
+                let other = &self.nodes[p as usize];
+                if other.part == *part {
+                    return Some(renamed[p as usize]);
+                }
+                // A limb that starts where it leaves needs no second start.
+                (other.node.position != node.position).then(|| copy(&mut skeletons, *part, p, &self.nodes))
+            });
+            let list = &mut skeletons[*part as usize].nodes;
+            renamed.push(list.len() as u32);
+            list.push(SkeletonNode { parent, ..*node });
+        }
+        for PlantEnd { part, path, .. } in &self.ends {
+            let is_own = |node: u32| self.nodes[node as usize].part == *part;
+            // A path that has no node of its own ends where it starts.
+            let end = if is_own(path.end) {
+                renamed[path.end as usize]
+            } else {
+                copy(&mut skeletons, *part, path.end, &self.nodes)
+            };
+            let own = &mut skeletons[*part as usize];
+            let root = if is_own(path.root) {
+                renamed[path.root as usize]
+            } else {
+                let up = |&i: &u32| own.nodes[i as usize].parent;
+                std::iter::successors(Some(end), up).last().unwrap_or(end)
+            };
+            own.paths.push(Path { end, root, ..*path });
+        }
+        skeletons
+    }
+}
+
+/// A direction from `a` to `b`, or zero.
+pub(super) fn way(a: DVec3, b: DVec3) -> DVec3 {
+    (b - a).normalize_or_zero()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::build::tests::skeleton;
+    use super::*;
+    use crate::math::PerRound;
+
+    /// A trunk of 4 with an arm, and two limbs from the trunk's top.
+    fn parts() -> (Skeleton, Skeleton) {
+        let mut trunk = skeleton(&[&[(0, 4), (0, 3), (0, 2), (0, 1), (0, 0)], &[(2, 2), (1, 2), (0, 2), (0, 1), (0, 0)]]);
+        let mut limbs = skeleton(&[&[(1, 7), (1, 6), (0, 5), (0, 4)], &[(-1, 5), (0, 4)]]);
+        trunk.root_paths();
+        limbs.root_paths();
+        limbs.nodes.iter_mut().for_each(|n| n.level = 1);
+        (trunk, limbs)
+    }
+
+    /// Against the paper's own way of tracing back from each endpoint.
+    #[test]
+    fn widths_follow_every_trace() {
+        let (trunk, limbs) = parts();
+        let width = |root, z| Width::Length(ByLength { root, tip: None, unit: None, z: PerRound::All(z) });
+        let (wide, fine) = (width(Some(0.5), 0.6), width(None, 0.3));
+        let given = [
+            Part { skeleton: &trunk, width: &wide, first_level: 0 },
+            Part { skeleton: &limbs, width: &fine, first_level: 1 },
+        ];
+        let mut plant = Plant::new(&given);
+        plant.thicken(&wide);
+        let longest = 4.0 + 2.0_f64.sqrt() + 2.0_f64.sqrt() * 0.0 + 1.0 + 2.0_f64.sqrt();
+        let mut expected = vec![0.0_f64; plant.nodes.len()];
+        let mut most = 0.0_f64;
+        for end in &plant.ends {
+            let z = if end.part == 0 { 0.6 } else { 0.3 };
+            let (mut s, mut at) = (0.0, Some(end.path.end));
+            while let Some(i) = at {
+                expected[i as usize] = expected[i as usize].max(power(s / longest * 1e3, z));
+                most = most.max(s);
+                s += plant.step(i as usize);
+                at = plant.nodes[i as usize].node.parent;
+            }
+        }
+        assert!((most - longest).abs() < 1e-12, "{most} {longest}");
+        for (node, s) in plant.nodes.iter().zip(&expected) {
+            assert!((node.node.radius - 0.5 * s / expected[0]).abs() < 1e-12);
+            let parent = node.node.parent.map_or(f64::INFINITY, |p| plant.nodes[p as usize].node.radius);
+            assert!(node.node.radius <= parent, "width grows towards the tip");
+        }
+        assert_eq!(plant.nodes[0].node.radius, 0.5);
+        let back = plant.split();
+        assert_eq!((back[0].nodes.len(), back[0].paths.len()), (trunk.nodes.len(), 2));
+        assert_eq!((back[1].nodes.len(), back[1].paths.len()), (limbs.nodes.len(), 2));
+        assert_eq!(back[1].nodes[0].position, limbs.nodes[0].position);
+    }
+
+    #[test]
+    fn a_pipe_keeps_its_area() {
+        let (trunk, limbs) = parts();
+        let width = Width::Pipe(Pipe { root: Some(0.4), tip: None, power: 2.0 });
+        let given = [
+            Part { skeleton: &trunk, width: &width, first_level: 0 },
+            Part { skeleton: &limbs, width: &width, first_level: 1 },
+        ];
+        let mut plant = Plant::new(&given);
+        plant.thicken(&width);
+        for i in 0..plant.nodes.len() as u32 {
+            let children: f64 = plant
+                .nodes
+                .iter()
+                .filter(|n| n.node.parent == Some(i))
+                .map(|n| n.node.radius * n.node.radius)
+                .sum();
+            let own = plant.nodes[i as usize].node.radius;
+            assert!(children == 0.0 || (own * own - children).abs() < 1e-12);
+        }
+        assert!((plant.nodes[0].node.radius - 0.4).abs() < 1e-12);
+    }
+}
