@@ -11,7 +11,7 @@ use super::error::Failure;
 use super::jobs::Jobs;
 use crate::export::{Pov, Templates};
 use crate::scene;
-use crate::skeleton::measure;
+use crate::skeleton::{Orders, Skeleton, measure_from};
 
 /// A writer that counts.
 #[derive(Default)]
@@ -60,7 +60,8 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
                     "edges": step.edges,
                     "settled": step.settled,
                     "dropped": step.dropped,
-                    "skeleton": measure(&step.skeleton),
+                    "skeleton": measure_from(&step.skeleton, step.foot),
+                    "streams": streams(&step.skeleton),
                 })
             })
             .collect();
@@ -83,10 +84,14 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
         }
         console.line(&format!("{}: {} (seed {})", job.name(), scene.title, scene.seed));
         for step in &grown {
-            let m = measure(&step.skeleton);
+            let m = measure_from(&step.skeleton, step.foot);
             console.line(&format!(
                 "  {}: {} nodes, {} edges, {} settled; {} endpoints, {} dropped; {} skeleton nodes, tortuosity {:.3}, spread {:.3}",
                 step.name, step.nodes, step.edges, step.settled, m.endpoints, step.dropped, m.nodes, m.tortuosity, m.spread
+            ));
+            console.line(&format!(
+                "    {} orders of Strahler, bifurcation ratio {:.2}, twigs {:.3} long, dimension {:.2}",
+                m.strahler, m.bifurcation, m.twig, m.dimension
             ));
         }
         console.line(&format!(
@@ -99,4 +104,11 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
         console.line(&format!("  {}", times.join(", ")));
     }
     Ok(())
+}
+
+/// How many limbs of each order of Strahler there are, and how long they are on average.
+fn streams(skeleton: &Skeleton) -> serde_json::Value {
+    let orders = Orders::new(skeleton);
+    let each = orders.streams.iter().zip(&orders.lengths);
+    each.map(|(count, length)| json!({ "count": count, "mean_length": length })).collect()
 }

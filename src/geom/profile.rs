@@ -51,11 +51,11 @@ impl Profile {
         let scale = length / (to - from).length();
         let side = outline.iter().map(|&p| along.perp_dot(p - from)).fold(0.0, |sum, s| sum + s);
         // The outline may be on either side of the axis.
-        let side = if side < 0.0 { 1.0 } else { -1.0 };
+        let side = if side < 0.0 { -1.0 } else { 1.0 };
         let step = outline.len().div_ceil(MOST_POINTS);
         let kept = outline.iter().enumerate().filter(|(i, _)| i % step == 0 || i + 1 == outline.len());
         kept.map(|(_, &p)| {
-            let across = -along.perp_dot(p - from) * scale * -side;
+            let across = along.perp_dot(p - from) * scale * side;
             if across < -TOUCH * length {
                 return Err("the outline crosses its axis: draw it on one side".to_owned());
             }

@@ -23,7 +23,7 @@ pub use lattice::{Lattice, LatticeError, Window};
 pub use mask::Mask;
 pub use neighbours::Neighbours;
 pub use poisson::{Region, poisson_points};
-pub use scatter::{Joining, Scatter, ScatterError, ScatterPlan, scatter_bytes, scatter_estimate};
+pub use scatter::{EdgeWeights, Joining, Scatter, ScatterError, ScatterPlan, scatter_bytes, scatter_estimate};
 pub use sectors::Sectors;
 pub use weights::{WeightError, WeightRange, WeightTable, Weights};
 

@@ -4,6 +4,7 @@
 //! order: darts are thrown into a cell, and where they miss it is cut up and searched until a place is found or all of
 //! it is known to be taken or outside (after Ebeida et al. 2012). A cell so visited never has room again.
 
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x8};
 use rand::RngExt;
 use rayon::prelude::*;
 
@@ -15,8 +16,8 @@ use crate::math::{DVec3, Stream, mix};
 const BLOCK: i32 = 16;
 /// Cells around a block in which nodes matter to it: a cell is 1 / sqrt 3 (in the plane 1 / sqrt 2) of the spacing.
 const HALO: i32 = 2;
-/// Darts thrown into a cell before it is searched.
-const DARTS: u32 = 3;
+/// Pieces of a cell down to this depth are judged in single precision, with this share to spare.
+const COARSE: (u32, f64) = (6, 1e-5);
 /// A cell is cut in halves at most this often: what is then left is a millionth of a spacing wide.
 const DEEPEST: u32 = 20;
 /// The last of the nodes to be visited: no cell needs more pieces, but degenerate shapes might.
@@ -89,13 +90,17 @@ pub(super) fn poisson(
             held[cells.index(at)] = nodes.len() as u32;
         }
     }
+    let level = Level::new();
     let blocks = cells.size.map(|s| (s + BLOCK - 1) / BLOCK);
     // Blocks of equal parity do not touch: eight phases.
     for phase in 0..8 {
         let every = |axis: usize| (0..blocks[axis]).filter(move |b| b & 1 == phase >> axis & 1);
         let places: Vec<[i32; 3]> =
             every(2).flat_map(|z| every(1).flat_map(move |y| every(0).map(move |x| [x, y, z]))).collect();
-        let fill = |&place: &[i32; 3]| Block::new(cells, spacing, place, &held, &nodes).fill(region, stream);
+        let fill = |&place: &[i32; 3]| {
+            let block = Block::new(cells, spacing, place, &held, &nodes);
+            dispatch!(level, simd => block.fill(simd, region, stream))
+        };
         let found: Vec<Vec<DVec3>> =
             if places.len() > 1 { places.par_iter().map(fill).collect() } else { places.iter().map(fill).collect() };
         for p in found.into_iter().flatten() {
@@ -144,6 +149,17 @@ struct Block<'a> {
     first: usize,
     /// Pieces that wait to be searched.
     waiting: Vec<Piece>,
+}
+
+/// The nodes that leave room in a cell or not, those nearest to its middle first.
+#[derive(Default)]
+struct Near {
+    /// Where they are.
+    nodes: Vec<DVec3>,
+    /// The same from the cell's middle, eight at a time; what is missing is far away.
+    lanes: Vec<[[f32; 8]; 3]>,
+    /// The cell's middle.
+    middle: DVec3,
 }
 
 /// A place in a cell that is being searched.
@@ -229,26 +245,37 @@ impl<'a> Block<'a> {
     }
 
     /// Visits every cell, and returns the nodes found.
-    fn fill(mut self, region: &dyn Region, stream: &Stream) -> Vec<DVec3> {
-        let half = self.cells.side * if self.cells.is_plane { 0.707_107 } else { 0.866_026 };
+    #[inline(always)]
+    fn fill<S: Simd>(mut self, simd: S, region: &dyn Region, stream: &Stream) -> Vec<DVec3> {
+        let half = self.half_diagonal(self.cells.side);
         let mut order: Vec<(u64, [i16; 3], bool)> = Vec::new();
-        for z in 0..self.size[2] {
-            for y in 0..self.size[1] {
-                for x in 0..self.size[0] {
-                    if !self.has_room([x, y, z]) {
+        // Two by two cells at a time: most are inside or outside together.
+        let deep = if self.cells.is_plane { 1 } else { 2 };
+        for z in (0..self.size[2]).step_by(deep) {
+            for y in (0..self.size[1]).step_by(2) {
+                for x in (0..self.size[0]).step_by(2) {
+                    let low = self.low_corner([0, 1, 2].map(|axis| [x, y, z][axis] + self.low[axis]));
+                    let whole = region.margin(self.middle_of(low, self.cells.side * 2.0));
+                    if whole > 2.0 * half {
                         continue;
                     }
-                    let at = [x + self.low[0], y + self.low[1], z + self.low[2]];
-                    let margin = region.margin(self.middle(at));
-                    if margin <= half {
-                        let name = self.cells.index(at) as u64;
-                        order.push((mix(stream.key() ^ mix(name)), [x as i16, y as i16, z as i16], margin <= -half));
+                    for (dx, dy, dz) in (0..8).map(|i| (i & 1, i >> 1 & 1, i >> 2)) {
+                        let own = [x + dx, y + dy, z + dz];
+                        if (0..3).any(|axis| own[axis] >= self.size[axis]) || !self.has_room(own) {
+                            continue;
+                        }
+                        let at = [0, 1, 2].map(|axis| own[axis] + self.low[axis]);
+                        let margin = if whole <= -2.0 * half { whole } else { region.margin(self.middle(at)) };
+                        if margin <= half {
+                            let name = self.cells.index(at) as u64;
+                            order.push((mix(stream.key() ^ mix(name)), own.map(|c| c as i16), margin <= -half));
+                        }
                     }
                 }
             }
         }
         order.sort_unstable_by_key(|&(key, at, _)| (key, at));
-        let mut near = Vec::with_capacity(64);
+        let mut near = Near::default();
         for (key, at, is_inside) in order {
             let at = at.map(i32::from);
             if !self.has_room(at) {
@@ -257,11 +284,16 @@ impl<'a> Block<'a> {
             self.gather(at, &mut near);
             let low = self.low_corner([at[0] + self.low[0], at[1] + self.low[1], at[2] + self.low[2]]);
             let piece = Piece { low, side: self.cells.side, depth: 0, is_inside };
-            if let Some(p) = self.search(region, &near, piece, stream.nth(key)) {
+            if let Some(p) = self.search(simd, region, &near, piece, stream.nth(key)) {
                 self.put(at, p);
             }
         }
         self.nodes.split_off(self.first)
+    }
+
+    /// Half the diagonal of a cube (in the plane, a square) of this side, or a hair more.
+    fn half_diagonal(&self, side: f64) -> f64 {
+        side * if self.cells.is_plane { 0.707_107 } else { 0.866_026 }
     }
 
     /// Is the cell not known to be taken?
@@ -285,8 +317,8 @@ impl<'a> Block<'a> {
 
     /// The nodes that are too near to something in the cell `at`, those nearest to its middle first: they are the likeliest
     /// to leave no room in a piece of it.
-    fn gather(&self, at: [i32; 3], near: &mut Vec<DVec3>) {
-        near.clear();
+    fn gather(&self, at: [i32; 3], near: &mut Near) {
+        near.nodes.clear();
         let half = self.cells.side * 0.5;
         let middle = self.middle([0, 1, 2].map(|axis| at[axis] + self.low[axis]));
         let deep = if self.cells.is_plane { 0 } else { HALO };
@@ -300,32 +332,49 @@ impl<'a> Block<'a> {
                     let p = self.nodes[self.held[cell] as usize - 1];
                     let off = ((p - middle).abs() - half).max(DVec3::ZERO);
                     if off.length_squared() < self.apart {
-                        near.push(p);
+                        near.nodes.push(p);
                     }
                     held &= held - 1;
                 }
             }
         }
-        near.sort_unstable_by(|a, b| middle.distance_squared(*a).total_cmp(&middle.distance_squared(*b)));
+        let far = |p: &DVec3| middle.distance_squared(*p);
+        near.nodes.sort_unstable_by(|a, b| far(a).total_cmp(&far(b)));
+        near.middle = middle;
+        near.lanes.clear();
+        for eight in near.nodes.chunks(8) {
+            let mut lanes = [[1e18_f32; 8]; 3];
+            for (i, p) in eight.iter().enumerate() {
+                let d = (*p - middle).to_array();
+                (0..3).for_each(|axis| lanes[axis][i] = d[axis] as f32);
+            }
+            near.lanes.push(lanes);
+        }
     }
 
-    /// A place in `piece` that is in the region and has room, if there is one.
-    fn search(&mut self, region: &dyn Region, near: &[DVec3], whole: Piece, mut random: Stream) -> Option<DVec3> {
+    /// A place in `whole` that is in the region and has room, if there is one.
+    #[inline(always)]
+    fn search<S: Simd>(
+        &mut self,
+        simd: S,
+        region: &dyn Region,
+        near: &Near,
+        whole: Piece,
+        mut random: Stream,
+    ) -> Option<DVec3> {
         let (apart, is_plane) = (self.apart, self.cells.is_plane);
-        let is_free = |p: DVec3| near.iter().all(|q| q.distance_squared(p) >= apart);
         let dart = |piece: &Piece, random: &mut Stream| {
             let [u, v, w]: [f64; 3] = std::array::from_fn(|_| random.random());
             let p = piece.low + DVec3::new(u, v, w) * piece.side;
             let p = if is_plane { p.with_z(0.0) } else { p };
-            (is_free(p) && (piece.is_inside || region.margin(p) <= 0.0)).then_some(p)
+            let is_free = near.nodes.iter().all(|q| q.distance_squared(p) >= apart);
+            (is_free && (piece.is_inside || region.margin(p) <= 0.0)).then_some(p)
         };
-        if self.is_taken(near, &whole) {
+        if self.is_taken(simd, near, &whole) {
             return None;
         }
-        for _ in 0..DARTS {
-            if let Some(p) = dart(&whole, &mut random) {
-                return Some(p);
-            }
+        if let Some(p) = dart(&whole, &mut random) {
+            return Some(p);
         }
         self.waiting.clear();
         self.waiting.push(whole);
@@ -336,14 +385,14 @@ impl<'a> Block<'a> {
                 continue;
             }
             let side = piece.side * 0.5;
-            let half = side * if self.cells.is_plane { 0.707_107 } else { 0.866_026 };
-            let children = if self.cells.is_plane { 4 } else { 8 };
+            let half = self.half_diagonal(side);
+            let children = if is_plane { 4 } else { 8 };
             let turn = random.random::<u64>() % children;
             for i in 0..children {
                 let child = i ^ turn;
                 let corner = DVec3::new((child & 1) as f64, (child >> 1 & 1) as f64, (child >> 2) as f64);
                 let mut part = Piece { low: piece.low + corner * side, side, depth: piece.depth + 1, ..piece };
-                if self.is_taken(near, &part) {
+                if self.is_taken(simd, near, &part) {
                     continue;
                 }
                 if !part.is_inside {
@@ -363,12 +412,27 @@ impl<'a> Block<'a> {
     }
 
     /// Is all of `piece` too near to one of the nodes?
-    fn is_taken(&self, near: &[DVec3], piece: &Piece) -> bool {
+    #[inline(always)]
+    fn is_taken<S: Simd>(&self, simd: S, near: &Near, piece: &Piece) -> bool {
         let half = piece.side * 0.5;
         let middle = self.middle_of(piece.low, piece.side);
-        near.iter().any(|&q| {
-            let far = (q - middle).abs() + half;
-            let far = if self.cells.is_plane { far.with_z(0.0) } else { far };
+        let deep = if self.cells.is_plane { 0.0 } else { half };
+        if piece.depth <= COARSE.0 {
+            // Loops alone: closures would not be compiled for the instruction set.
+            let at = middle - near.middle;
+            let limit = f32x8::splat(simd, (self.apart * (1.0 - COARSE.1)) as f32);
+            for lanes in &near.lanes {
+                let x = (f32x8::from_slice(simd, &lanes[0]) - at.x as f32).abs() + half as f32;
+                let y = (f32x8::from_slice(simd, &lanes[1]) - at.y as f32).abs() + half as f32;
+                let z = (f32x8::from_slice(simd, &lanes[2]) - at.z as f32).abs() + deep as f32;
+                if (x * x + y * y + z * z).simd_lt(limit).any_true() {
+                    return true;
+                }
+            }
+            return false;
+        }
+        near.nodes.iter().any(|&q| {
+            let far = (q - middle).abs() + DVec3::new(half, half, deep);
             far.length_squared() < self.apart
         })
     }

@@ -1,8 +1,10 @@
 //! Irregular graphs: Poisson-disc nodes in a shape, joined to their neighbours (Xu and Mould 2012, section 3.1).
 
+use std::ops::Range;
+
 use super::joined::Neighbourhood;
 use super::poisson::{Cells, poisson};
-use super::{CostField, FieldValue, Node, Region, Sectors, WeightError, WeightTable};
+use super::{CostField, FieldValue, Node, Region, Sectors, WeightTable};
 use crate::math::{DVec3, Stream, mix};
 
 /// Side of a cell of the neighbourhood, in spacings: two rings of such cells hold nearly every neighbour.
@@ -33,26 +35,44 @@ pub struct ScatterPlan<'a> {
     pub is_plane: bool,
     /// Which nodes are joined.
     pub joining: &'a Joining,
-    /// The random part of the weights.
-    pub table: &'a WeightTable,
-    /// The rest of them.
-    pub fields: &'a [CostField],
     /// Places that are nodes, as far as they are not too near to each other.
     pub fixed: &'a [DVec3],
     /// The owner of a place, where nodes of two owners are not to be joined; 0 joins all.
     pub owner: Option<&'a (dyn Fn(DVec3) -> u8 + Sync)>,
 }
 
-/// A scattered graph. Its edges are stored, both ways, with their weights.
+/// A scattered graph. Its edges are stored, both ways; their weights are made apart ([`Scatter::weigh`]), so that many may
+/// share the nodes.
 #[derive(Clone, Debug, Default)]
 pub struct Scatter {
     positions: Vec<DVec3>,
     owners: Vec<u8>,
     /// Where the edges of each node start.
     starts: Vec<u32>,
-    /// Other end and fixed-point weight.
-    edges: Vec<(Node, u32)>,
+    /// Other ends.
+    ends: Vec<Node>,
+    spacing: f64,
+}
+
+/// A weight for each edge of a scattered graph, in the order of [`Scatter::edges`].
+#[derive(Clone, Debug, Default)]
+pub struct EdgeWeights {
+    weights: Vec<u32>,
     fraction: u32,
+}
+
+impl EdgeWeights {
+    /// The real number that the fixed-point `cost` stands for: `R^alpha` times the length in spacings.
+    #[must_use]
+    pub fn real(&self, cost: u64) -> f64 {
+        cost as f64 / f64::from(1_u32 << self.fraction)
+    }
+
+    /// Those of the edges in `range`.
+    #[must_use]
+    pub fn of(&self, range: Range<usize>) -> &[u32] {
+        &self.weights[range]
+    }
 }
 
 /// Why nodes cannot be scattered.
@@ -72,9 +92,6 @@ pub enum ScatterError {
         /// How many there can be.
         most: usize,
     },
-    /// The weights are out of range.
-    #[error(transparent)]
-    Weights(#[from] WeightError),
 }
 
 /// About how many nodes `spacing` apart the box with these corners holds.
@@ -91,7 +108,7 @@ pub fn scatter_bytes(nodes: f64) -> u64 {
 }
 
 impl Scatter {
-    /// Scatters nodes in `region` and joins them; random numbers come from `stream`.
+    /// Scatters nodes in `region`, at random by `stream`, and joins them.
     ///
     /// # Errors
     /// [`ScatterError::Empty`], [`ScatterError::TooMany`].
@@ -107,44 +124,54 @@ impl Scatter {
             return Err(ScatterError::Empty);
         }
         let owners: Vec<u8> = plan.owner.map_or_else(Vec::new, |owner| positions.iter().map(|&p| owner(p)).collect());
-        let mut graph = Self { positions, owners, fraction: plan.table.fraction(), ..Self::default() };
-        let owned = (!graph.owners.is_empty()).then_some(&graph.owners[..]);
-        let (starts, others) = match plan.joining {
+        let owned = (!owners.is_empty()).then_some(&owners[..]);
+        let (starts, ends) = match plan.joining {
             Joining::Yao(sectors) => {
-                let near = Neighbourhood::new(&graph.positions, owned, plan.spacing * CELL).yao(sectors);
-                both_ways(graph.positions.len(), |i| {
+                let near = Neighbourhood::new(&positions, owned, plan.spacing * CELL).yao(sectors);
+                both_ways(positions.len(), |i| {
                     near[i * sectors.count()..(i + 1) * sectors.count()].iter().copied().filter(|&j| j != u32::MAX)
                 })
             }
             Joining::Radius(reach) => {
-                let near = Neighbourhood::new(&graph.positions, owned, *reach).within(*reach);
-                both_ways(graph.positions.len(), |i| near[i].iter().copied())
+                let near = Neighbourhood::new(&positions, owned, *reach).within(*reach);
+                both_ways(positions.len(), |i| near[i].iter().copied())
             }
         };
-        let values: Vec<FieldValue> = if plan.fields.is_empty() {
+        Ok(Self { positions, owners, starts, ends, spacing: plan.spacing })
+    }
+
+    /// Weights for its edges: `R^alpha` by `table` times the length in spacings, R from `stream`, with `fields` at the places
+    /// where `put` puts the nodes.
+    #[must_use]
+    pub fn weigh(
+        &self,
+        table: &WeightTable,
+        fields: &[CostField],
+        put: impl Fn(DVec3) -> DVec3,
+        stream: &Stream,
+    ) -> EdgeWeights {
+        let fraction = table.fraction();
+        let one = f64::from(1_u32 << fraction);
+        let values: Vec<FieldValue> = if fields.is_empty() {
             Vec::new()
         } else {
-            graph.positions.iter().map(|&p| CostField::combine(plan.fields, p)).collect()
+            self.positions.iter().map(|&p| CostField::combine(fields, put(p))).collect()
         };
-        let one = f64::from(1_u32 << graph.fraction);
-        let weight = |i: u32, j: u32| {
-            let (a, b) = (graph.positions[i as usize], graph.positions[j as usize]);
-            let name = u64::from(i.min(j)) | u64::from(i.max(j)) << 32;
-            let mut weight = f64::from(plan.table.entry(0, mix(stream.key() ^ mix(name))));
-            if let [a, b] = [i, j].map(|n| values.get(n as usize))
-                && let (Some(a), Some(b)) = (a, b)
-            {
-                weight = weight * (a.factor + b.factor) * 0.5 + (a.sum + b.sum) * 0.5 * one;
+        let per_spacing = 1.0 / self.spacing;
+        let mut weights = Vec::with_capacity(self.ends.len());
+        for i in 0..self.positions.len() as u32 {
+            let a = self.positions[i as usize];
+            for &Node(j) in &self.ends[self.edges(Node(i))] {
+                let length = a.distance(self.positions[j as usize]) * per_spacing;
+                let name = u64::from(i.min(j)) | u64::from(i.max(j)) << 32;
+                let mut weight = f64::from(table.entry(0, mix(stream.key() ^ mix(name))));
+                if let (Some(a), Some(b)) = (values.get(i as usize), values.get(j as usize)) {
+                    weight = weight * (a.factor + b.factor) * 0.5 + (a.sum + b.sum) * 0.5 * one;
+                }
+                weights.push((weight * length + 0.5).clamp(1.0, 4e9) as u32);
             }
-            libm::floor(weight * (a.distance(b) / plan.spacing) + 0.5).clamp(1.0, 4e9) as u32
-        };
-        graph.edges = Vec::with_capacity(others.len());
-        for i in 0..graph.positions.len() as u32 {
-            let range = starts[i as usize] as usize..starts[i as usize + 1] as usize;
-            graph.edges.extend(others[range].iter().map(|&j| (Node(j), weight(i, j))));
         }
-        graph.starts = starts;
-        Ok(graph)
+        EdgeWeights { weights, fraction }
     }
 
     /// How many nodes there are; they are called from 0 on.
@@ -180,32 +207,32 @@ impl Scatter {
     /// How many edges there are, each counted once.
     #[must_use]
     pub fn count_edges(&self) -> u64 {
-        self.edges.len() as u64 / 2
+        self.ends.len() as u64 / 2
     }
 
-    /// The edges of `node`: other end and fixed-point weight.
+    /// Which edges are those of `node`.
     #[must_use]
-    pub fn edges(&self, node: Node) -> &[(Node, u32)] {
-        &self.edges[self.starts[node.0 as usize] as usize..self.starts[node.0 as usize + 1] as usize]
+    pub fn edges(&self, node: Node) -> Range<usize> {
+        self.starts[node.0 as usize] as usize..self.starts[node.0 as usize + 1] as usize
     }
 
-    /// The real number that the fixed-point `cost` stands for: `R^alpha` times the length in spacings.
+    /// The other ends of the edges in `range`.
     #[must_use]
-    pub fn real(&self, cost: u64) -> f64 {
-        cost as f64 / f64::from(1_u32 << self.fraction)
+    pub fn ends(&self, range: Range<usize>) -> &[Node] {
+        &self.ends[range]
     }
 
     /// The nodes nearest to `points`; of several the first.
     #[must_use]
-    pub fn nearest(&self, points: &[DVec3], spacing: f64) -> Vec<Node> {
-        let near = Neighbourhood::new(&self.positions, None, spacing * CELL);
+    pub fn nearest(&self, points: &[DVec3]) -> Vec<Node> {
+        let near = Neighbourhood::new(&self.positions, None, self.spacing * CELL);
         points.iter().filter_map(|&p| near.nearest_to(p).map(Node)).collect()
     }
 }
 
 /// The edges of `count` nodes both ways, once each, from those that `near` lists in at least one direction: where each
 /// node's start, and their other ends.
-fn both_ways<I: Iterator<Item = u32>>(count: usize, near: impl Fn(usize) -> I) -> (Vec<u32>, Vec<u32>) {
+fn both_ways<I: Iterator<Item = u32>>(count: usize, near: impl Fn(usize) -> I) -> (Vec<u32>, Vec<Node>) {
     let is_back = |i: usize, j: u32| near(j as usize).any(|k| k as usize == i);
     // An edge that both ends list is told by the lower one.
     let listed = |i: usize| {
@@ -222,10 +249,10 @@ fn both_ways<I: Iterator<Item = u32>>(count: usize, near: impl Fn(usize) -> I) -
     for i in 0..count {
         starts[i + 1] += starts[i];
     }
-    let mut others = vec![0_u32; starts[count] as usize];
+    let mut others = vec![Node(0); starts[count] as usize];
     let mut next = starts.clone();
     let mut put = |i: usize, j: u32| {
-        others[next[i] as usize] = j;
+        others[next[i] as usize] = Node(j);
         next[i] += 1;
     };
     for i in 0..count {
@@ -242,7 +269,6 @@ mod tests {
     use proptest::prelude::*;
     use rand::RngExt;
 
-    use super::super::Weights;
     use super::*;
 
     /// A ball with a slit, off the origin.
@@ -261,10 +287,8 @@ mod tests {
     }
 
     fn scatter(spacing: f64, is_plane: bool, joining: &Joining, seed: u64) -> Scatter {
-        let table = WeightTable::new(Weights::default(), 1.0, 0.0).unwrap();
         let fixed = [DVec3::new(0.3, 0.4, 0.0), DVec3::new(0.3, 0.4 + spacing * 0.5, 0.0)];
-        let plan =
-            ScatterPlan { spacing, is_plane, joining, table: &table, fields: &[], fixed: &fixed, owner: None };
+        let plan = ScatterPlan { spacing, is_plane, joining, fixed: &fixed, owner: None };
         Scatter::new(&plan, &Ball(1.0), &Stream::new(seed, "scatter")).unwrap()
     }
 
@@ -301,7 +325,7 @@ mod tests {
         let make = || scatter(0.04, false, &Joining::Yao(Sectors::Orthants), 5);
         let (one, two) = (pool(1).install(make), pool(2).install(make));
         assert_eq!(one.positions, two.positions);
-        assert_eq!(one.edges, two.edges);
+        assert_eq!(one.ends, two.ends);
         // Cells of several blocks, and about six edges a node (2012, section 4).
         assert!(one.len() > 30_000, "{}", one.len());
         let each = one.count_edges() as f64 / one.len() as f64;
@@ -349,7 +373,7 @@ mod tests {
         let reach = 0.36;
         let nodes = graph.positions();
         for i in 0..graph.len() as u32 {
-            let mut joined: Vec<u32> = graph.edges(Node(i)).iter().map(|(j, _)| j.0).collect();
+            let mut joined: Vec<u32> = graph.ends(graph.edges(Node(i))).iter().map(|j| j.0).collect();
             joined.sort_unstable();
             let expected: Vec<u32> = (0..graph.len() as u32)
                 .filter(|&j| i != j && nodes[i as usize].distance(nodes[j as usize]) <= reach)

@@ -119,8 +119,8 @@ pub(super) fn scattered_marks(
             MarkKind::Edges => {
                 few_enough(graph.count_edges(), true)?;
                 for node in nodes() {
-                    let ends = graph.edges(node).iter().filter(|(end, _)| node < *end);
-                    ends.for_each(|&(end, _)| add(vec![graph.position(node), graph.position(end)]));
+                    let ends = graph.ends(graph.edges(node)).iter().filter(|end| node < **end);
+                    ends.for_each(|&end| add(vec![graph.position(node), graph.position(end)]));
                 }
             }
             MarkKind::Endpoints => endpoints.iter().for_each(|&node| add(vec![graph.position(node)])),

@@ -15,8 +15,8 @@ use super::{
     ScatterSpace, Source, Step, Unreached,
 };
 use crate::geom::Shape;
-use crate::graph::{Node, WeightTable};
-use crate::math::{DMat3, DVec3, PerRound, Progress, Stream, frame_along, mix, turned_toward};
+use crate::graph::{Node, Scatter, WeightTable};
+use crate::math::{DMat3, DVec3, PerRound, Progress, Stream, frame_along, mix, rotation, turned_toward};
 use crate::plan::routes;
 use crate::skeleton::{Path, Skeleton, SkeletonNode};
 
@@ -24,6 +24,9 @@ use crate::skeleton::{Path, Skeleton, SkeletonNode};
 const MOST_ENDS: f64 = 5e6;
 /// Ends that a thread takes at a time.
 const CHUNK: usize = 16;
+/// Different sets of nodes that subgraphs share. Each subgraph has weights and endpoints of its own, and is turned about
+/// its axis at random: that no two of a step's thousands have the same nodes would cost ten times their planning.
+const SETS: u64 = 64;
 
 /// How a step is repeated, with its names resolved.
 #[derive(Clone, Debug)]
@@ -82,10 +85,18 @@ pub struct Rounds<'a> {
     space: &'a ScatterSpace,
     seed: u64,
     table: WeightTable,
+    /// Nodes around an end, made when they are first wanted; unused where something is forbidden, which differs from end
+    /// to end.
+    sets: Vec<Option<Scatter>>,
     ends: Vec<End>,
     round: u32,
     level: u16,
     grown: Grown,
+}
+
+/// The set of nodes that an end takes.
+fn set_of(end: &End) -> usize {
+    (mix(end.name) % SETS) as usize
 }
 
 /// What one subgraph yields: nodes behind their parents (the end itself is 0), and the ends of its paths.
@@ -161,6 +172,7 @@ impl<'a> Rounds<'a> {
         let grown = Grown {
             name: step.name.clone(),
             skeleton,
+            foot: None,
             first_level: level,
             nodes: 0,
             edges: 0,
@@ -168,7 +180,8 @@ impl<'a> Rounds<'a> {
             dropped: 0,
             marks: Vec::new(),
         };
-        Ok(Self { step, repeat, space, seed, table, ends, round: 0, level, grown })
+        let sets = vec![None; SETS as usize];
+        Ok(Self { step, repeat, space, seed, table, sets, ends, round: 0, level, grown })
     }
 
     /// What has grown so far.
@@ -226,6 +239,9 @@ impl<'a> Rounds<'a> {
             );
             return Err(GrowError::Scene { place: format!("grow.{}.repeat.times", self.step.name), message });
         }
+        if self.space.is_alike() {
+            self.make_sets(&ends)?;
+        }
         // Equal pieces in order: the result does not depend on who grew them.
         let work: Vec<(&End, &Share)> = ends.iter().zip(&shares).collect();
         let sprouts: Vec<Sprout> = work
@@ -247,6 +263,26 @@ impl<'a> Rounds<'a> {
         Ok(())
     }
 
+    /// Makes the sets of nodes that `ends` take.
+    fn make_sets(&mut self, ends: &[End]) -> Result<(), GrowError> {
+        let mut wanted: Vec<usize> =
+            ends.iter().map(|end| set_of(end)).filter(|&set| self.sets[set].is_none()).collect();
+        wanted.sort_unstable();
+        wanted.dedup();
+        let stream = Stream::new(self.seed, &format!("space/{}", self.space.stream));
+        let made: Vec<Scatter> = wanted
+            .par_iter()
+            .map(|&set| self.space.scatter_around(None, &stream.nth(set as u64)))
+            .collect::<Result<_, _>>()
+            .map_err(|error| self.wrong_space(error.to_string()))?;
+        wanted.into_iter().zip(made).for_each(|(set, graph)| self.sets[set] = Some(graph));
+        Ok(())
+    }
+
+    fn wrong_space(&self, message: String) -> GrowError {
+        GrowError::Scene { place: format!("space.{}.nodes", self.step.space_name), message }
+    }
+
     /// The number by which an end counts its rounds.
     fn index(&self, end: &End) -> u32 {
         match self.repeat.by {
@@ -266,8 +302,8 @@ impl<'a> Rounds<'a> {
         sets.collect()
     }
 
-    /// Where the space around an end is.
-    fn place(&self, end: &End, share: &Share) -> Place {
+    /// Where the space around an end is; `own` is the end's stream.
+    fn place(&self, end: &End, share: &Share, own: &Stream) -> Place {
         let at = self.grown.skeleton.nodes[end.node as usize].position;
         let index = self.index(end);
         let mut way = match self.repeat.orient {
@@ -303,7 +339,8 @@ impl<'a> Rounds<'a> {
             // The space's y is along the way.
             DMat3::from_cols(DVec3::new(way.y, -way.x, 0.0), way, DVec3::Z)
         } else {
-            frame_along(way)
+            let roll: f64 = own.nth(0).random();
+            frame_along(way) * rotation(DVec3::Z, std::f64::consts::TAU * roll)
         };
         Place { at, turn, size }
     }
@@ -316,26 +353,34 @@ impl<'a> Rounds<'a> {
             return Ok(sprout);
         }
         let own = stream.nth(end.name);
-        let place = self.place(end, share);
-        let wrong = |message: String| GrowError::Scene { place: format!("space.{}.nodes", self.step.space_name), message };
-        let (graph, shape) =
-            self.space.scatter_at(&place, &self.table, &own).map_err(|error| wrong(error.to_string()))?;
+        let place = self.place(end, share, &own);
+        let alone;
+        let graph = match &self.sets[set_of(end)] {
+            Some(graph) => graph,
+            None => {
+                alone = self
+                    .space
+                    .scatter_around(Some(&place), &own)
+                    .map_err(|error| self.wrong_space(error.to_string()))?;
+                &alone
+            }
+        };
         let mut wanted: Vec<(Node, u16)> = Vec::new();
         let mut taken = vec![false; graph.len()];
         taken[0] = true;
         for (i, (set, count)) in self.step.endpoints.iter().zip(counts).enumerate() {
             let Placement::Random { inside, apart, shell, .. } = &set.placement else { continue };
-            let inside = inside.as_ref().map(|inside| inside.placed(place.size, place.turn, place.at));
-            let inside = inside.as_ref().unwrap_or(&shape);
-            let fits = |p: DVec3| inside.contains(p) && shell.is_none_or(|d| inside.depth(p) <= d * place.size);
-            let chosen = choose(&graph, &mut taken, count, apart * place.size, fits, &own.nth(1 + i as u64));
+            let inside = inside.as_ref().unwrap_or(&self.space.shape);
+            let fits = |p: DVec3| inside.contains(p) && shell.is_none_or(|d| inside.depth(p) <= d);
+            let chosen = choose(graph, &mut taken, count, *apart, fits, &own.nth(1 + i as u64));
             wanted.extend(chosen.into_iter().map(|node| (node, set.class)));
         }
         if wanted.is_empty() {
             return Ok(sprout);
         }
         let nodes: Vec<Node> = wanted.iter().map(|&(node, _)| node).collect();
-        let found = routes(&graph, &[(Node(0), 0)], &nodes, &Progress::default())?;
+        let weights = graph.weigh(&self.table, &self.space.fields, |p| place.put(p), &own);
+        let found = routes(graph, &weights, &[(Node(0), 0)], &nodes, &Progress::default())?;
         let mut known: Vec<u32> = vec![u32::MAX; graph.len()];
         known[0] = 0;
         let spacing = self.space.spacing * place.size;
@@ -348,7 +393,7 @@ impl<'a> Rounds<'a> {
                         place: format!("grow.{}.to", self.step.name),
                         message: format!(
                             "no path reaches the endpoint at {}: join more nodes, or set `unreached = \"drop\"`",
-                            graph.position(node)
+                            place.put(graph.position(node))
                         ),
                     });
                 }
@@ -364,14 +409,18 @@ impl<'a> Rounds<'a> {
                 fresh.push((at, cost));
             }
             for &(at, cost) in fresh.iter().rev() {
-                sprout.nodes.push((graph.position(at), parent, graph.real(cost) * spacing));
+                sprout.nodes.push((place.put(graph.position(at)), parent, weights.real(cost) * spacing));
                 parent = sprout.nodes.len() as u32;
                 known[at.0 as usize] = parent;
             }
             sprout.ends.push((parent, class));
         }
         sprout.graph = [graph.len() as u64, graph.count_edges(), found.settled() as u64];
-        sprout.marks = scattered_marks(&graph, &[&shape], &nodes, show).map_err(wrong)?;
+        sprout.marks = scattered_marks(graph, &[&self.space.shape], &nodes, show)
+            .map_err(|message| self.wrong_space(message))?
+            .into_iter()
+            .map(|mark| Mark { line: mark.line.into_iter().map(|p| place.put(p)).collect(), ..mark })
+            .collect();
         Ok(sprout)
     }
 

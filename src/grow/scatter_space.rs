@@ -2,8 +2,8 @@
 
 use crate::geom::{Shape, Solid};
 use crate::graph::{
-    CostField, Joining, Region, Scatter, ScatterError, ScatterPlan, WeightTable, Weights, poisson_points, scatter_bytes,
-    scatter_estimate,
+    CostField, EdgeWeights, Joining, Region, Scatter, ScatterError, ScatterPlan, WeightError, WeightTable, Weights,
+    poisson_points, scatter_bytes, scatter_estimate,
 };
 use crate::math::{DMat3, DVec3, Stream};
 
@@ -81,6 +81,7 @@ impl Region for Open<'_> {
 /// A graph, and the volumes that it was scattered in beside the space's shape.
 pub(super) struct Scattered {
     pub graph: Scatter,
+    pub weights: EdgeWeights,
     /// The spheres of its clusters; owner i has the sphere i - 1.
     pub spheres: Vec<Shape>,
     /// The cluster volumes, for drawings.
@@ -112,30 +113,34 @@ impl ScatterSpace {
     ///
     /// # Errors
     /// Where they are out of range.
-    pub fn table(&self) -> Result<WeightTable, ScatterError> {
-        Ok(WeightTable::new(self.weights, 1.0, 0.0)?)
+    pub fn table(&self) -> Result<WeightTable, WeightError> {
+        WeightTable::new(self.weights, 1.0, 0.0)
     }
 
     /// The graph of a scene with this seed, with nodes at `fixed` as far as these are apart.
     ///
     /// # Errors
     /// [`ScatterError`].
-    pub(super) fn scatter(&self, seed: u64, fixed: &[DVec3]) -> Result<Scattered, ScatterError> {
+    pub(super) fn scatter(
+        &self,
+        table: &WeightTable,
+        seed: u64,
+        fixed: &[DVec3],
+    ) -> Result<Scattered, ScatterError> {
         let stream = Stream::new(seed, &format!("space/{}", self.stream));
-        let table = self.table()?;
+        let weigh = |graph: &Scatter| graph.weigh(table, &self.fields, |p| p, &stream);
         let plan = ScatterPlan {
             spacing: self.spacing,
             is_plane: self.is_plane,
             joining: &self.joining,
-            table: &table,
-            fields: &self.fields,
             fixed,
             owner: None,
         };
         let Some(clusters) = &self.clusters else {
             let open = Open { shape: &self.shape, forbid: self.forbid.as_ref(), fixed };
             let graph = Scatter::new(&plan, &open, &stream)?;
-            return Ok(Scattered { graph, spheres: Vec::new(), volumes: Vec::new() });
+            let weights = weigh(&graph);
+            return Ok(Scattered { graph, weights, spheres: Vec::new(), volumes: Vec::new() });
         };
         let coarse = Open { shape: &clusters.inside, forbid: None, fixed: &[] };
         let centres = poisson_points(&coarse, clusters.apart, self.is_plane, &stream.nth(1))?;
@@ -163,31 +168,45 @@ impl ScatterSpace {
         };
         let open = Open { shape: &whole, forbid: self.forbid.as_ref(), fixed };
         let graph = Scatter::new(&ScatterPlan { owner: Some(&owner), ..plan }, &open, &stream)?;
-        Ok(Scattered { graph, spheres, volumes })
+        let weights = weigh(&graph);
+        Ok(Scattered { graph, weights, spheres, volumes })
     }
 
-    /// The graph of the space put at `place`, whose first node is there, and its shape.
+    /// May ends share nodes? Not where something is forbidden, or joined by a length in the scene's units.
+    pub(super) fn is_alike(&self) -> bool {
+        self.forbid.is_none() && matches!(self.joining, Joining::Yao(_))
+    }
+
+    /// Nodes around an end, in the space's own coordinates; the first is the end. What is forbidden, in the scene's
+    /// coordinates, is left out where the space is put at `place`.
     ///
     /// # Errors
     /// [`ScatterError`].
-    pub(super) fn scatter_at(
-        &self,
-        place: &Place,
-        table: &WeightTable,
-        stream: &Stream,
-    ) -> Result<(Scatter, Shape), ScatterError> {
-        let shape = self.shape.placed(place.size, place.turn, place.at);
-        let fixed = [place.at];
+    pub(super) fn scatter_around(&self, place: Option<&Place>, stream: &Stream) -> Result<Scatter, ScatterError> {
+        let fixed = [DVec3::ZERO];
+        let joining = match (&self.joining, place) {
+            (Joining::Radius(reach), Some(place)) => Joining::Radius(reach / place.size),
+            (joining, _) => joining.clone(),
+        };
         let plan = ScatterPlan {
-            spacing: self.spacing * place.size,
+            spacing: self.spacing,
             is_plane: self.is_plane,
-            joining: &self.joining,
-            table,
-            fields: &self.fields,
+            joining: &joining,
             fixed: &fixed,
             owner: None,
         };
-        let open = Open { shape: &shape, forbid: self.forbid.as_ref(), fixed: &fixed };
-        Ok((Scatter::new(&plan, &open, stream)?, shape))
+        let forbid = self.forbid.as_ref().zip(place).map(|(forbid, place)| {
+            let back = place.turn.transpose();
+            forbid.placed(1.0 / place.size, back, back * place.at * (-1.0 / place.size))
+        });
+        let open = Open { shape: &self.shape, forbid: forbid.as_ref(), fixed: &fixed };
+        Scatter::new(&plan, &open, stream)
+    }
+}
+
+impl Place {
+    /// Where a point of the space is put.
+    pub fn put(&self, p: DVec3) -> DVec3 {
+        self.turn * (p * self.size) + self.at
     }
 }

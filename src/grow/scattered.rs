@@ -6,7 +6,7 @@ use super::choice::choose;
 use super::construction::scattered_marks;
 use super::{GrowError, Grown, MarkKind, Placement, ScatterSpace, Source, Step, Unreached};
 use crate::geom::Shape;
-use crate::graph::{Node, Scatter};
+use crate::graph::{EdgeWeights, Node, Scatter};
 use crate::math::{DVec3, Progress, Stream};
 use crate::plan::{Routes, routes};
 use crate::skeleton::Skeleton;
@@ -14,6 +14,7 @@ use crate::skeleton::Skeleton;
 /// Paths on their way into a skeleton.
 struct Paths<'a> {
     graph: &'a Scatter,
+    weights: &'a EdgeWeights,
     spacing: f64,
     /// Where nodes are that were told exactly.
     exact: HashMap<Node, DVec3>,
@@ -23,10 +24,10 @@ struct Paths<'a> {
 
 impl Paths<'_> {
     /// Adds the path to `end`, whose generator starts with the cost `before`.
-    fn add(&mut self, found: &Routes<'_>, end: Node, class: u16, before: f64) {
+    fn add(&mut self, found: &Routes, end: Node, class: u16, before: f64) {
         let path = found.path(end).map(|(node, cost)| {
             let p = self.exact.get(&node).copied().unwrap_or_else(|| self.graph.position(node));
-            (node, p, before + self.graph.real(cost) * self.spacing)
+            (node, p, before + self.weights.real(cost) * self.spacing)
         });
         self.skeleton.add_path(&mut self.known, class, path);
     }
@@ -59,9 +60,14 @@ impl Step {
                 return Err(GrowError::Scene { place: format!("grow.{}.{key}", self.name), message });
             }
         }
-        let scattered = space.scatter(seed, &fixed).map_err(|error| in_space(error.to_string()))?;
+        let table = space.table().map_err(|error| GrowError::Scene {
+            place: format!("space.{}.weights", self.space_name),
+            message: error.to_string(),
+        })?;
+        let scattered = space.scatter(&table, seed, &fixed).map_err(|error| in_space(error.to_string()))?;
         let graph = &scattered.graph;
-        let nearest = |points: &[DVec3]| graph.nearest(points, space.spacing);
+        let weights = &scattered.weights;
+        let nearest = |points: &[DVec3]| graph.nearest(points);
         let mut generators: Vec<(Node, u64)> = Vec::new();
         if let Source::Inside(shape) = &self.source {
             let is_in = |node: &Node| shape.contains(graph.position(*node));
@@ -132,9 +138,10 @@ impl Step {
             }
         }
         let nodes: Vec<Node> = wanted.iter().map(|&(node, ..)| node).collect();
-        self.delay(graph, &mut generators, &exact, grown, progress)?;
+        self.delay(graph, weights, &mut generators, &exact, grown, progress)?;
         let mut paths = Paths {
             graph,
+            weights,
             spacing: space.spacing,
             exact,
             known: HashMap::new(),
@@ -161,11 +168,11 @@ impl Step {
             let mut before = 0.0;
             let kept = paths.skeleton.paths.len();
             for &node in list {
-                let found = routes(graph, &from, &[node], progress)?;
+                let found = routes(graph, weights, &from, &[node], progress)?;
                 settled += found.settled() as u64;
                 if let Some(cost) = found.cost(node) {
                     paths.add(&found, node, *class, before);
-                    before += graph.real(cost) * space.spacing;
+                    before += weights.real(cost) * space.spacing;
                 } else {
                     unreached(node, "through")?;
                 }
@@ -178,7 +185,7 @@ impl Step {
         }
         if !nodes.is_empty() || lists.is_empty() {
             // What the given ways have made is there already.
-            let found = routes(graph, &generators, &nodes, progress)?;
+            let found = routes(graph, weights, &generators, &nodes, progress)?;
             settled += found.settled() as u64;
             for &(node, class, set) in &wanted {
                 if found.cost(node).is_none() {
@@ -200,6 +207,7 @@ impl Step {
         let marks = scattered_marks(graph, &shapes, &ends, show).map_err(in_space)?;
         Ok(Grown {
             name: self.name.clone(),
+            foot: None,
             first_level: 0,
             nodes: graph.len() as u64,
             edges: graph.count_edges(),
@@ -233,6 +241,7 @@ impl Step {
     fn delay(
         &self,
         graph: &Scatter,
+        weights: &EdgeWeights,
         generators: &mut [(Node, u64)],
         exact: &HashMap<Node, DVec3>,
         grown: &[Option<&Skeleton>],
@@ -241,7 +250,7 @@ impl Step {
         let along = self.ways_along(grown);
         let (Some(&(first, _)), false) = (generators.first(), along.is_empty()) else { return Ok(()) };
         // What paths pay for a length here.
-        let found = routes(graph, &[(first, 0)], &[], progress)?;
+        let found = routes(graph, weights, &[(first, 0)], &[], progress)?;
         let (mut cost, mut length) = (0.0, 0.0);
         for i in 0..graph.len() as u32 {
             if let Some(paid) = found.cost(Node(i)) {

@@ -84,6 +84,8 @@ pub struct Grown {
     pub name: String,
     /// The union of its paths, with radii.
     pub skeleton: Skeleton,
+    /// Where the plant starts that it belongs to, if it is a part of one.
+    pub foot: Option<DVec3>,
     /// The level of its first round, counted through all steps before.
     pub first_level: u16,
     /// Nodes of the graph.
@@ -245,6 +247,7 @@ impl Step {
         };
         Ok(Grown {
             name: self.name.clone(),
+            foot: None,
             first_level: 0,
             nodes: lattice.open_nodes(),
             edges: lattice.count_edges(),

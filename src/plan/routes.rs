@@ -1,7 +1,7 @@
 //! Least-cost paths over graphs whose edges are stored: a radix heap (Ahuja et al. 1990), whose time is linear in the
 //! edges but for the few times that a node moves to a nearer bucket.
 
-use crate::graph::{Node, Scatter};
+use crate::graph::{EdgeWeights, Node, Scatter};
 use crate::math::{Cancelled, Progress};
 
 /// Not reached.
@@ -12,8 +12,7 @@ const NONE: u32 = u32::MAX;
 const PAUSE: usize = 1 << 16;
 
 /// Least-cost paths: a cost and a predecessor for each node.
-pub struct Routes<'g> {
-    graph: &'g Scatter,
+pub struct Routes {
     costs: Vec<u64>,
     before: Vec<u32>,
     settled: usize,
@@ -49,18 +48,19 @@ impl RadixHeap {
     }
 }
 
-/// Least costs over `graph` from `generators`, each of which starts with the fixed-point cost beside it, until all of
+/// Least costs over `graph` with these `weights` from `generators`, each of which starts with the fixed-point cost beside it, until all of
 /// `wanted` are settled or nothing is left; with nothing wanted, to every node. Equal costs go to the predecessor with
 /// the lower number.
 ///
 /// # Errors
 /// [`Cancelled`] by `progress`.
-pub fn routes<'g>(
-    graph: &'g Scatter,
+pub fn routes(
+    graph: &Scatter,
+    weights: &EdgeWeights,
     generators: &[(Node, u64)],
     wanted: &[Node],
     progress: &Progress,
-) -> Result<Routes<'g>, Cancelled> {
+) -> Result<Routes, Cancelled> {
     let mut costs = vec![FAR; graph.len()];
     let mut before = vec![NONE; graph.len()];
     let mut is_wanted = vec![false; if wanted.is_empty() { 0 } else { graph.len() }];
@@ -90,7 +90,8 @@ pub fn routes<'g>(
         if settled % PAUSE == 0 {
             progress.report("plan", settled as f64 / graph.len() as f64)?;
         }
-        for &(Node(other), weight) in graph.edges(Node(node)) {
+        let edges = graph.edges(Node(node));
+        for (&Node(other), &weight) in graph.ends(edges.clone()).iter().zip(weights.of(edges)) {
             let new = cost + u64::from(weight);
             let old = &mut costs[other as usize];
             if new < *old {
@@ -102,23 +103,17 @@ pub fn routes<'g>(
             }
         }
     }
-    Ok(Routes { graph, costs, before, settled })
+    Ok(Routes { costs, before, settled })
 }
 
-impl<'g> Routes<'g> {
-    /// The graph that was planned over.
-    #[must_use]
-    pub fn graph(&self) -> &'g Scatter {
-        self.graph
-    }
-
+impl Routes {
     /// How many nodes have their final cost.
     #[must_use]
     pub fn settled(&self) -> usize {
         self.settled
     }
 
-    /// The least cost of `node`, fixed-point ([`Scatter::real`]), or `None` if it was not reached.
+    /// The least cost of `node`, fixed-point ([`EdgeWeights::real`]), or `None` if it was not reached.
     #[must_use]
     pub fn cost(&self, node: Node) -> Option<u64> {
         Some(self.costs[node.0 as usize]).filter(|&cost| cost != FAR)

@@ -119,6 +119,13 @@ fn shape_plants(steps: &[Step], grown: &mut [Grown]) {
             plants.entry(base).or_default().push(i);
         }
     }
+    let feet: Vec<(usize, Option<DVec3>)> = plants
+        .iter()
+        .flat_map(|(&base, members)| {
+            let foot = grown[base].skeleton.nodes.first().map(|node| node.position);
+            members.iter().map(move |&i| (i, foot))
+        })
+        .collect();
     let shaped: Vec<(Vec<usize>, Vec<Skeleton>)> = plants
         .into_par_iter()
         .map(|(base, members)| {
@@ -145,6 +152,7 @@ fn shape_plants(steps: &[Step], grown: &mut [Grown]) {
             grown[i].skeleton = skeleton;
         }
     }
+    feet.into_iter().for_each(|(i, foot)| grown[i].foot = foot);
 }
 
 /// The model of a scene from what its steps yielded, for a picture of `size` pixels.

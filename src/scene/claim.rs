@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::grow::{Grown, Step};
 use crate::math::Ref;
-use crate::skeleton::{Skeleton, apart, crossings, dimension, floating, measure, shared_ends};
+use crate::skeleton::{Skeleton, apart, crossings, dimension, floating, measure_from, shared_ends};
 
 /// A claim about a step: one quantity, and what it is held against.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -81,12 +81,46 @@ pub enum Quantity {
     Crossings,
     /// The greatest distance from the limbs of the step `with`.
     Apart,
+    /// How many directions limbs take in the plane.
+    Directions,
+    /// How different ways to the ends are in length.
+    LengthVariation,
+    /// How unevenly ends fill space.
+    Clumping,
+    /// How long the paths of a level are, over those of the level before.
+    LevelRatio,
+    /// How far to the right (along x) ends are, as a share of how far they spread.
+    Lean,
+    /// The order of Strahler.
+    Strahler,
+    /// Limbs of an order over those of the next (Horton).
+    Bifurcation,
+    /// Mean length of the limbs of the first order.
+    Twig,
+    /// Nodes of the graph.
+    GraphNodes,
+    /// Edges of the graph for each of its nodes.
+    EdgesPerNode,
+    /// Endpoints that no path reached.
+    Dropped,
 }
 
 impl Quantity {
-    fn of(self, skeleton: &Skeleton, with: Option<&Skeleton>) -> f64 {
-        let m = measure(skeleton);
+    fn of(self, grown: &Grown, with: Option<&Skeleton>) -> f64 {
+        let skeleton = &grown.skeleton;
+        let m = measure_from(skeleton, grown.foot);
         match self {
+            Self::Directions => m.directions as f64,
+            Self::LengthVariation => m.length_variation,
+            Self::Clumping => m.clumping,
+            Self::LevelRatio => m.level_ratio,
+            Self::Lean => m.lean,
+            Self::Strahler => m.strahler as f64,
+            Self::Bifurcation => m.bifurcation,
+            Self::Twig => m.twig,
+            Self::GraphNodes => grown.nodes as f64,
+            Self::EdgesPerNode => grown.edges as f64 / grown.nodes.max(1) as f64,
+            Self::Dropped => grown.dropped as f64,
             Self::Endpoints => m.endpoints as f64,
             Self::Length => m.length,
             Self::Tortuosity => m.tortuosity,
@@ -128,9 +162,10 @@ pub struct Finding {
 /// Measures every claim on the steps that were grown.
 #[must_use]
 pub fn check_claims(claims: &BTreeMap<String, Claim>, grown: &[Grown]) -> Vec<Finding> {
-    let step = |name: &Ref<Step>| grown.iter().find(|g| g.name == name.name).map(|g| &g.skeleton);
+    let step = |name: &Ref<Step>| grown.iter().find(|g| g.name == name.name);
     let findings = claims.iter().filter_map(|(name, claim)| {
-        let measured = claim.measure.of(step(&claim.of)?, claim.with.as_ref().and_then(&step));
+        let with = claim.with.as_ref().and_then(step).map(|g| &g.skeleton);
+        let measured = claim.measure.of(step(&claim.of)?, with);
         let mut against = Vec::new();
         let mut holds = true;
         if let Some(least) = claim.at_least {

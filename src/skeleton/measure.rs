@@ -1,8 +1,10 @@
 //! What figures claim of a skeleton, as numbers.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
-use super::{Skeleton, dimension};
+use super::{Orders, Path, Skeleton, dimension};
 use crate::math::DVec3;
 
 /// Numbers that describe a skeleton's form.
@@ -28,7 +30,7 @@ pub struct Measurement {
     pub trunk: f64,
     /// How far the lowest end of a path lies below the root, in scene units.
     pub depth: f64,
-    /// Share of the paths that end lower than they start.
+    /// Share of the paths that end lower than the root of their graph.
     pub falling: f64,
     /// The greatest radius, in scene units.
     pub radius: f64,
@@ -36,12 +38,34 @@ pub struct Measurement {
     pub taper: f64,
     /// Box-counting dimension.
     pub dimension: f64,
+    /// How many directions hold at least a hundredth of the length each, by tens of degrees, seen along z.
+    pub directions: usize,
+    /// Standard deviation over mean of the lengths of ways from a root to an end from which nothing grew on.
+    pub length_variation: f64,
+    /// How unevenly ends fill space: standard deviation over mean of their number in 4 by 4 by 4 boxes.
+    pub clumping: f64,
+    /// How far apart ends and the roots of their graphs are, each level over the one before (geometric mean).
+    pub level_ratio: f64,
+    /// Mean place of the ends along x, as a share of the greatest distance from the upright line through the root.
+    pub lean: f64,
+    /// The highest order of Strahler.
+    pub strahler: usize,
+    /// Number of streams of an order over that of the next (Horton; geometric mean).
+    pub bifurcation: f64,
+    /// Mean length of a stream of the first order: a twig, in scene units.
+    pub twig: f64,
 }
 
-/// Measures `skeleton`; the last axis that it extends along is up.
+/// Measures `skeleton`, from its first root; the last axis that it extends along is up.
 #[must_use]
 pub fn measure(skeleton: &Skeleton) -> Measurement {
-    let Some(root) = skeleton.nodes.first().map(|n| n.position) else {
+    measure_from(skeleton, None)
+}
+
+/// [`measure`] from `foot`, where the plant starts that `skeleton` belongs to.
+#[must_use]
+pub fn measure_from(skeleton: &Skeleton, foot: Option<DVec3>) -> Measurement {
+    let Some(root) = foot.or(skeleton.nodes.first().map(|n| n.position)) else {
         return Measurement::default();
     };
     let is_flat = skeleton.nodes.iter().all(|n| n.position.z == root.z);
@@ -83,10 +107,25 @@ pub fn measure(skeleton: &Skeleton) -> Measurement {
     let ends = || skeleton.paths.iter().map(|path| path.end as usize);
     let tips: f64 = ends().map(|i| skeleton.nodes[i].radius).sum();
     let radius = skeleton.nodes.iter().map(|n| n.radius).fold(0.0, f64::max);
-    let falls = |&i: &usize| height(skeleton.nodes[i].position) < height(skeleton.nodes[start[i] as usize].position);
+    let falls = |path: &&Path| {
+        let [end, root] = [path.end, path.root].map(|i| height(skeleton.nodes[i as usize].position));
+        end < root
+    };
     let mean = |sum: f64, count: usize| if count == 0 { 0.0 } else { sum / count as f64 };
     let share = |sum: f64| if length > 0.0 { sum / length } else { 0.0 };
+    let orders = Orders::new(skeleton);
+    let places: Vec<DVec3> = ends().map(|i| skeleton.nodes[i].position).collect();
+    let widest = places.iter().map(|&p| offset(p)).fold(f64::MIN_POSITIVE, f64::max);
+    let ways: Vec<f64> = skeleton.ends(false).map(|(end, _)| along[end as usize]).collect();
     Measurement {
+        directions: directions(skeleton, length),
+        length_variation: variation(&ways),
+        clumping: clumping(&places),
+        level_ratio: level_ratio(skeleton),
+        lean: mean(places.iter().map(|p| p.x - root.x).sum(), places.len()) / widest,
+        strahler: orders.highest(),
+        bifurcation: orders.bifurcation(),
+        twig: orders.lengths.first().copied().unwrap_or(0.0),
         nodes: skeleton.nodes.len(),
         endpoints: skeleton.paths.len(),
         length,
@@ -96,10 +135,56 @@ pub fn measure(skeleton: &Skeleton) -> Measurement {
         fork_height: mean(forks.iter().map(|&i| height(skeleton.nodes[i].position)).sum(), forks.len()) / top,
         spread: most(&offset) / top,
         depth: -ends().map(|i| height(skeleton.nodes[i].position)).fold(0.0, f64::min),
-        falling: mean(ends().filter(falls).count() as f64, skeleton.paths.len()),
+        falling: mean(skeleton.paths.iter().filter(falls).count() as f64, skeleton.paths.len()),
         radius,
         taper: if tips > 0.0 { radius / mean(tips, skeleton.paths.len()) } else { 0.0 },
         dimension: dimension(&[skeleton]),
         trunk: forks.first().map_or(length, |&i| along[i]) / top,
+    }
+}
+
+/// Standard deviation over mean; 0 of nothing.
+fn variation(numbers: &[f64]) -> f64 {
+    let count = numbers.len().max(1) as f64;
+    let mean = numbers.iter().sum::<f64>() / count;
+    let square = numbers.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / count;
+    if mean > 0.0 { libm::sqrt(square) / mean } else { 0.0 }
+}
+
+fn directions(skeleton: &Skeleton, length: f64) -> usize {
+    let mut bins = [0.0; 36];
+    for (from, to) in skeleton.segments() {
+        let way = to.position - from.position;
+        let turn = libm::atan2(way.y, way.x) / std::f64::consts::TAU + 1.0;
+        bins[libm::floor(turn * 36.0 + 0.5) as usize % 36] += way.length();
+    }
+    bins.iter().filter(|&&sum| sum > length * 0.01).count()
+}
+
+fn clumping(places: &[DVec3]) -> f64 {
+    let low = places.iter().copied().reduce(DVec3::min).unwrap_or_default();
+    let high = places.iter().copied().reduce(DVec3::max).unwrap_or_default();
+    let size = (high - low).max(DVec3::splat(f64::MIN_POSITIVE));
+    let mut boxes = [0.0; 64];
+    for &p in places {
+        let [x, y, z] = ((p - low) / size * 4.0).to_array().map(|c| (c as usize).min(3));
+        boxes[x + 4 * y + 16 * z] += 1.0;
+    }
+    variation(&boxes)
+}
+
+fn level_ratio(skeleton: &Skeleton) -> f64 {
+    let mut reach: BTreeMap<u16, (f64, f64)> = BTreeMap::new();
+    for path in &skeleton.paths {
+        let [end, root] = [path.end, path.root].map(|i| &skeleton.nodes[i as usize]);
+        let sum = reach.entry(end.level).or_default();
+        *sum = (sum.0 + end.position.distance(root.position), sum.1 + 1.0);
+    }
+    let means: Vec<f64> = reach.values().map(|(sum, count)| sum / count).collect();
+    match means[..] {
+        [first, .., last] if first > 0.0 && last > 0.0 => {
+            libm::exp(libm::log(last / first) / (means.len() as f64 - 1.0))
+        }
+        _ => 1.0,
     }
 }
