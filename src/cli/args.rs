@@ -360,6 +360,22 @@ pub enum Format {
     Pov,
     /// A schematic: NAME.svg
     Svg,
+    /// A mesh for other programs, y up: NAME.obj (objects with `skin = "mesh"`)
+    Obj,
+    /// A mesh for other programs, z up: NAME.ply (objects with `skin = "mesh"`)
+    Ply,
+}
+
+impl Format {
+    /// The ending of the file that it makes, or of the first of them.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Pov => "inc",
+            Self::Svg => "svg",
+            Self::Obj => "obj",
+            Self::Ply => "ply",
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

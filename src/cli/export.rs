@@ -9,7 +9,7 @@ use super::console::Console;
 use super::error::Failure;
 use super::jobs::Jobs;
 use super::render::check_name;
-use crate::export::{Pov, SvgOptions, Templates, write_svg};
+use crate::export::{Pov, SvgOptions, Templates, write_obj, write_ply, write_svg};
 use crate::files::{encode_exr, is_edited, seal, write_bytes, write_whole};
 use crate::grow::MarkKind;
 
@@ -24,7 +24,7 @@ pub fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
     let templates = read_templates(args.templates.as_deref())?;
     for ((job, name), path) in jobs.list.iter().zip(&names).zip(&paths) {
         let folder = Path::new(path).parent().unwrap_or(Path::new("."));
-        let first = folder.join(format!("{name}.{}", if args.to == Format::Pov { "inc" } else { "svg" }));
+        let first = folder.join(format!("{name}.{}", args.to.ending()));
         if args.skip_existing && first.exists() {
             continue;
         }
@@ -33,13 +33,23 @@ pub fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
         let show: Vec<MarkKind> = match args.to {
             Format::Svg if args.show.is_empty() => scene.show.clone(),
             Format::Svg => args.show.iter().filter_map(|&s| s.mark()).collect(),
-            Format::Pov => Vec::new(),
+            Format::Pov | Format::Obj | Format::Ply => Vec::new(),
         };
         let model = jobs.model(&scene, &show, console, &progress)?;
         let written = match args.to {
             Format::Svg => {
                 write_whole(&first, |out| write_svg(&model, SvgOptions { size: scene.size }, out))
                     .map_err(|e| Failure::file("write", &first, &e))?;
+                vec![first]
+            }
+            Format::Obj | Format::Ply => {
+                let wrong = |e: std::io::Error| match e.kind() {
+                    std::io::ErrorKind::InvalidInput => Failure::Usage(format!("{}: {e}", job.name())),
+                    _ => Failure::file("write", &first, &e),
+                };
+                let obj = args.to == Format::Obj;
+                write_whole(&first, |out| if obj { write_obj(&model, out) } else { write_ply(&model, out) })
+                    .map_err(wrong)?;
                 vec![first]
             }
             Format::Pov => {

@@ -2,12 +2,14 @@
 
 mod decimal;
 mod identifier;
+mod mesh;
 mod pov;
 mod pov_body;
 mod svg;
 mod templates;
 
 pub use identifier::identifier;
+pub use mesh::{NoMesh, write_obj, write_ply};
 pub use pov::{Origin, Pov};
 pub use svg::{SvgOptions, write_svg};
 pub use templates::{TemplateError, Templates};

@@ -105,9 +105,23 @@ pub(super) fn write_mesh(mesh: &Mesh, digits: Digits, out: &mut impl Write) -> i
     if !mesh.normals.is_empty() {
         list(out, "normal_vectors", &mesh.normals, Digits(6))?;
     }
+    if !mesh.uvs.is_empty() {
+        let unit = Digits(5);
+        write!(out, "uv_vectors {{ {}", mesh.uvs.len() * 3)?;
+        for [u, v] in mesh.uvs.iter().flatten() {
+            write!(out, ",\n<{},{}>", number(*u, unit), number(*v, unit))?;
+        }
+        writeln!(out, " }}")?;
+    }
     write!(out, "face_indices {{ {}", mesh.triangles.len())?;
     for [a, b, c] in &mesh.triangles {
         write!(out, ",\n<{a},{b},{c}>")?;
+    }
+    if !mesh.uvs.is_empty() {
+        write!(out, " }}\nuv_indices {{ {}", mesh.uvs.len())?;
+        for i in (0..mesh.uvs.len()).map(|i| i * 3) {
+            write!(out, ",\n<{},{},{}>", i, i + 1, i + 2)?;
+        }
     }
     writeln!(out, " }}\n}}")
 }

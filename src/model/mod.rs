@@ -11,6 +11,7 @@ mod object;
 mod pattern;
 mod skin;
 mod stroke;
+mod surface;
 mod view;
 
 pub use appearance::{FADE, Ground, GroundSpec, Light, LightSpec, Material, Sky, SkySpec};

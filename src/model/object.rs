@@ -27,6 +27,33 @@ pub struct Mesh {
     pub normals: Vec<DVec3>,
     /// Three corners each.
     pub triangles: Vec<[u32; 3]>,
+    /// Places in a texture of each triangle's corners: around the limb from 0 to 1, and along it in circumferences; empty
+    /// where there is none.
+    pub uvs: Vec<[[f64; 2]; 3]>,
+}
+
+impl Mesh {
+    /// Gives each corner the normal of the triangles around it, by their area.
+    pub fn smooth(&mut self) {
+        let mut normals = vec![DVec3::ZERO; self.points.len()];
+        for triangle in &self.triangles {
+            let [a, b, c] = triangle.map(|i| self.points[i as usize]);
+            let normal = (b - a).cross(c - a);
+            triangle.iter().for_each(|&i| normals[i as usize] += normal);
+        }
+        self.normals = normals.into_iter().map(|n| n.normalize_or(DVec3::Z)).collect();
+    }
+
+    /// Every number rounded once: points with these digits.
+    #[must_use]
+    pub fn rounded(&self, digits: Digits) -> Self {
+        Self {
+            points: self.points.iter().map(|&p| digits.round_point(p)).collect(),
+            normals: self.normals.iter().map(|&n| Digits(6).round_point(n)).collect(),
+            triangles: self.triangles.clone(),
+            uvs: self.uvs.iter().map(|uvs| uvs.map(|uv| uv.map(|x| Digits(5).round(x)))).collect(),
+        }
+    }
 }
 
 /// A place where an object stands: first scaled, then turned, then moved.

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::surface::surface;
 use super::{Ball, Digits, Instance, Mesh, Object, Pose, to_world};
 use crate::math::{DVec3, tolerance::INVISIBLE_RADIUS};
 use crate::skeleton::{Skeleton, overlap};
@@ -25,6 +26,9 @@ pub enum Skin {
     /// A round cone along each segment: the frustum tangent to the spheres at its ends, and these.
     #[default]
     Cones,
+    /// One smooth surface of triangles around limbs that are joined where one leaves another, with places for a texture
+    /// around and along them. Copies share it, and its leaves, which a union of cones does not in POV-Ray.
+    Mesh,
 }
 
 /// Why a skeleton has no skin.
@@ -58,12 +62,7 @@ impl Object {
             return Err(SkinError::Size);
         }
         let digits = Digits::for_size(size);
-        let unit = Digits(6);
-        let mesh = Mesh {
-            points: mesh.points.iter().map(|&p| digits.round_point(p)).collect(),
-            normals: mesh.normals.iter().map(|&n| unit.round_point(n)).collect(),
-            triangles: mesh.triangles.clone(),
-        };
+        let mesh = mesh.rounded(digits);
         Ok(Self {
             name: name.to_owned(),
             instances: vec![Instance::at(digits.round_point(offset))],
@@ -94,12 +93,7 @@ impl Object {
         if poses.len() > MOST_PRIMITIVES {
             return Err(SkinError::TooMany(poses.len()));
         }
-        let unit = Digits(Pose::DIGITS);
-        let mesh = Mesh {
-            points: mesh.points.iter().map(|&p| unit.round_point(p)).collect(),
-            normals: mesh.normals.iter().map(|&n| Digits(6).round_point(n)).collect(),
-            triangles: mesh.triangles.clone(),
-        };
+        let mesh = mesh.rounded(Digits(Pose::DIGITS));
         Ok(Self {
             name: name.to_owned(),
             instances: vec![Instance::at(foot)],
@@ -111,6 +105,21 @@ impl Object {
             digits,
             shadow: true,
         })
+    }
+}
+
+impl Mesh {
+    /// This mesh at each of `poses`, as one.
+    #[must_use]
+    pub fn at_poses(&self, poses: &[Pose]) -> Self {
+        let mut all = Self::default();
+        for pose in poses {
+            let first = all.points.len() as u32;
+            all.points.extend(self.points.iter().map(|&p| pose.to_object(p)));
+            all.normals.extend(self.normals.iter().map(|&n| (pose.axes * n).normalize_or(DVec3::Z)));
+            all.triangles.extend(self.triangles.iter().map(|t| t.map(|i| first + i)));
+        }
+        all
     }
 }
 
@@ -169,8 +178,12 @@ impl Skin {
     ) -> Result<Object, SkinError> {
         let root = foot(skeletons).ok_or(SkinError::Empty)?;
         let dense;
+        if self == Self::Mesh {
+            let mesh = surface(skeletons, root);
+            return Object::of_mesh(name, &mesh, to_world(root + offset, is_flat), material);
+        }
         let skeletons: Vec<&Skeleton> = match self {
-            Self::Cones => skeletons.to_vec(),
+            Self::Cones | Self::Mesh => skeletons.to_vec(),
             Self::Spheres => {
                 dense = skeletons.iter().map(|s| overlap(s, SPHERE_GAP, MOST_SPHERES)).collect::<Vec<_>>();
                 dense.iter().collect()

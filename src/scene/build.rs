@@ -8,7 +8,7 @@ use super::{LightsSpec, Resolved, SceneError};
 use crate::grow::{Canopy, GrowError, Grown, Mark, MarkKind, Rounds, Space, Step};
 use crate::math::{Cancelled, Colour, DVec3, Progress, Stream};
 use crate::model::{
-    Camera, Ground, Instance, Light, Material, Model, Object, Projection, SkinError, Stroke, foot, shining, to_world,
+    Camera, Ground, Instance, Light, Material, Model, Object, Projection, Skin, SkinError, Stroke, foot, shining, to_world,
 };
 use crate::skeleton::{Part, Plant, Skeleton};
 
@@ -199,9 +199,15 @@ pub fn model(scene: &Resolved, grown: &[Grown], size: [u32; 2]) -> Result<Model,
             let stream = Stream::new(scene.seed, &format!("leaves/{}/{name}", plan.name));
             let grown_foot = foot(&skeletons).unwrap_or(DVec3::ZERO);
             let poses = spec.place(&skeletons, grown_foot, digits, &stream);
-            if !poses.is_empty() {
-                parts.push(Object::of_poses(&format!("{}_{name}", plan.name), mesh, poses, first, digits, *material).map_err(wrong)?);
+            let name = format!("{}_{name}", plan.name);
+            if poses.is_empty() {
+                continue;
             }
+            parts.push(if plan.skin == Skin::Mesh {
+                Object::of_mesh(&name, &mesh.at_poses(&poses), first, *material).map_err(wrong)?
+            } else {
+                Object::of_poses(&name, mesh, poses, first, digits, *material).map_err(wrong)?
+            });
         }
         for mut part in parts {
             part.shadow = plan.shadow;

@@ -36,7 +36,7 @@ pub struct FormSpec {
 
 impl Default for FormSpec {
     fn default() -> Self {
-        Self { smoothness: 1.5, merge: 1.0, collar: 0.35, flare: 1.5 }
+        Self { smoothness: 1.5, merge: 1.35, collar: 0.35, flare: 1.5 }
     }
 }
 

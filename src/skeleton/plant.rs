@@ -302,7 +302,7 @@ mod tests {
         ];
         let mut plant = Plant::new(&given);
         plant.thicken(&wide);
-        let longest = 4.0 + 2.0_f64.sqrt() + 2.0_f64.sqrt() * 0.0 + 1.0 + 2.0_f64.sqrt();
+        let longest = 4.0 + 1.0 + 2.0_f64.sqrt() + 1.0;
         let mut expected = vec![0.0_f64; plant.nodes.len()];
         let mut most = 0.0_f64;
         for end in &plant.ends {
