@@ -30,6 +30,7 @@ fn million() -> Model {
         balls,
         segments,
         mesh: Mesh::default(),
+        poses: Vec::new(),
         digits,
         shadow: true,
     };

@@ -40,6 +40,7 @@ fn model(count: usize) -> Model {
             balls: cones.iter().flat_map(|c| [ball(c.a, c.ra), ball(c.b, c.rb)]).collect(),
             segments: (0..count as u32).map(|i| [2 * i, 2 * i + 1]).collect(),
             mesh: Mesh::default(),
+            poses: Vec::new(),
             digits,
             shadow: true,
         }],

@@ -2,7 +2,7 @@
 //! weighted graphs, and hands them to renderers. This is the library behind the command `lichtenberg`.
 //!
 //! # Vocabulary
-//! A **lattice** is a regular graph; its edges have random **weights**, changed in space by **cost fields**. Paths are
+//! A **lattice** is a regular graph, a **scatter** an irregular one; edges have random **weights**, changed in space by **cost fields**. Paths are
 //! planned from **generators**, the nodes at **cost** zero, to **endpoints**; the union of **paths** is a **skeleton**,
 //! which a **width** makes thick and a **skin** makes solid. A **scene** names all of these in a TOML file.
 //!

@@ -27,6 +27,7 @@ fn model(balls: Vec<Ball>, segments: Vec<[u32; 2]>) -> Model {
             balls,
             segments,
             mesh: Mesh::default(),
+            poses: Vec::new(),
             digits: Digits(5),
             shadow: true,
         }],

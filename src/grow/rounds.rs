@@ -21,7 +21,9 @@ use crate::plan::routes;
 use crate::skeleton::{Path, Skeleton, SkeletonNode};
 
 /// More ends than this in a round are refused: each has a graph of its own.
-const MOST_ENDS: f64 = 5e6;
+const MOST_ENDS: f64 = 1e6;
+/// Bytes that an end takes with the way to it, and with what is made of it.
+const END_BYTES: f64 = 4096.0;
 /// Ends that a thread takes at a time.
 const CHUNK: usize = 16;
 /// Different sets of nodes that subgraphs share. Each subgraph has weights and endpoints of its own, and is turned about
@@ -210,7 +212,8 @@ impl<'a> Rounds<'a> {
         self.repeat.influences.iter().filter_map(Influence::clump)
     }
 
-    /// Grows one round. `canopies` has a canopy for each of [`Rounds::clumps`], of what grew before this round.
+    /// Grows one round within `max_memory` bytes. `canopies` has a canopy for each of [`Rounds::clumps`], of what grew before
+    /// this round.
     ///
     /// # Errors
     /// [`GrowError`].
@@ -218,6 +221,7 @@ impl<'a> Rounds<'a> {
         &mut self,
         canopies: &[Canopy],
         show: &[MarkKind],
+        max_memory: u64,
         progress: &Progress,
     ) -> Result<(), GrowError> {
         let stream = Stream::new(self.seed, &format!("rounds/{}/{}", self.step.name, self.round));
@@ -232,9 +236,10 @@ impl<'a> Rounds<'a> {
             shares.iter_mut().zip(dealt).for_each(|(share, dealt)| *share = share.with(dealt));
         }
         let counted: f64 = ends.iter().zip(&shares).map(|(end, share)| f64::from(self.counts(end, share).iter().sum::<u32>())).sum();
-        if counted > MOST_ENDS {
+        let most = f64::min(MOST_ENDS, max_memory as f64 / END_BYTES);
+        if self.grown.skeleton.paths.len() as f64 + counted > most {
             let message = format!(
-                "round {} would have {counted:.1e} ends, more than {MOST_ENDS:.0e}: use fewer rounds or lower counts",
+                "round {} would have {counted} ends, more than the {most:.0} that there is memory for: use fewer rounds, lower counts or shorter lifespans",
                 self.round + 1
             );
             return Err(GrowError::Scene { place: format!("grow.{}.repeat.times", self.step.name), message });

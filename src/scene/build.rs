@@ -84,7 +84,7 @@ pub fn grow(scene: &Resolved, show: &[MarkKind], max_memory: u64, progress: &Pro
         };
         let finished = finished.map_err(told)?;
         for (rounds, canopies) in growing.values_mut().zip(&canopies) {
-            rounds.advance(canopies, show, progress).map_err(told)?;
+            rounds.advance(canopies, show, max_memory, progress).map_err(told)?;
         }
         round.into_iter().zip(finished).for_each(|(i, step)| grown[i] = Some(step));
         let done: Vec<usize> = growing.iter().filter(|(_, rounds)| rounds.is_done()).map(|(&i, _)| i).collect();
