@@ -1,5 +1,6 @@
 //! Irregular trees: Table 1 of Xu and Mould 2012 beside the paper's times, and how scattering a graph and planning in it
 //! grows with its nodes. `--plot FILE` draws the latter.
+#![allow(clippy::print_stdout, reason = "it is a report")]
 
 use std::time::Instant;
 
@@ -91,23 +92,31 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 /// Seconds over nodes on logarithmic axes, with a line of slope 1 through the first.
 fn plot(points: &[(f64, f64)]) -> String {
-    let x = |nodes: f64| 60.0 + (nodes.log10() - 4.0) * 120.0;
-    let y = |seconds: f64| 300.0 - (seconds.log10() + 3.0) * 60.0;
+    let x = |nodes: f64| 60.0 + (libm::log10(nodes) - 4.0) * 120.0;
+    let y = |seconds: f64| 300.0 - (libm::log10(seconds) + 3.0) * 60.0;
     let mut svg = String::from(
         r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 460 340" font-family="sans-serif" font-size="12"><rect width="460" height="340" fill="white"/>"#,
     );
     for power in 4..=7 {
-        let at = x(10_f64.powf(f64::from(power)));
-        svg += &format!(r##"<path d="M{at} 20V300" stroke="#ddd"/><text x="{at}" y="318" text-anchor="middle">10^{power}</text>"##);
+        let at = x(libm::pow(10.0, f64::from(power)));
+        svg += &format!(
+            r##"<path d="M{at} 20V300" stroke="#ddd"/><text x="{at}" y="318" text-anchor="middle">10^{power}</text>"##
+        );
     }
     for power in -3..=1 {
-        let at = y(10_f64.powf(f64::from(power)));
-        svg += &format!(r##"<path d="M60 {at}H420" stroke="#ddd"/><text x="52" y="{}" text-anchor="end">10^{power} s</text>"##, at + 4.0);
+        let at = y(libm::pow(10.0, f64::from(power)));
+        svg += &format!(
+            r##"<path d="M60 {at}H420" stroke="#ddd"/><text x="52" y="{}" text-anchor="end">10^{power} s</text>"##,
+            at + 4.0
+        );
     }
     let (n, s) = points[0];
     svg += &format!(
         r##"<path d="M{} {}L{} {}" stroke="#999" stroke-dasharray="4 4"/><text x="240" y="334" text-anchor="middle">nodes (dashed: linear)</text>"##,
-        x(n), y(s), x(1e7), y(s * 1e7 / n)
+        x(n),
+        y(s),
+        x(1e7),
+        y(s * 1e7 / n)
     );
     for &(nodes, seconds) in points {
         svg += &format!(r##"<circle cx="{}" cy="{}" r="4" fill="#356"/>"##, x(nodes), y(seconds));

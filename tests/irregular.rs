@@ -64,14 +64,29 @@ fn bad_input_is_one_clear_error() {
         ),
         // A stem that ends below the crown.
         ("to = [0, 0, 2.2], radius = 0.15", "to = [0, 0, 0.9], radius = 0.15", "", ""),
-        (r#"nodes.scatter = { spacing = 0.3 }
-[space.tuft]"#, r#"nodes.scatter = { spacing = 0.3, radius = 0.35 }
-[space.tuft]"#, "", ""),
-        ("nodes.scatter = { spacing = 0.3 }\n[space.tuft]", "nodes.scatter = { spacing = 0.001 }\n[space.tuft]", "space.first.nodes.scatter.spacing", "nodes are too many"),
+        (
+            r#"nodes.scatter = { spacing = 0.3 }
+[space.tuft]"#,
+            r#"nodes.scatter = { spacing = 0.3, radius = 0.35 }
+[space.tuft]"#,
+            "",
+            "",
+        ),
+        (
+            "nodes.scatter = { spacing = 0.3 }\n[space.tuft]",
+            "nodes.scatter = { spacing = 0.001 }\n[space.tuft]",
+            "space.first.nodes.scatter.spacing",
+            "nodes are too many",
+        ),
         (crown, "mesh = { file = \"open.obj\" }", "shape.crown", "the mesh is open"),
         (crown, "revolve = { sketch = \"across.svg\", to = [0, 0, 3] }", "shape.crown", "crosses its axis"),
         ("size = 0.6 }", "size = 0.6, lifespan = { first = 0 } }", "grow.limbs.repeat.lifespan.first", "from 1 to 64"),
-        ("size = 0.6 }", "size = 0.6, lifespan = { first = 2, loss.chances = [[0.5, 1]] } }", "lifespan.loss.chances", "add up to 1"),
+        (
+            "size = 0.6 }",
+            "size = 0.6, lifespan = { first = 2, loss.chances = [[0.5, 1]] } }",
+            "lifespan.loss.chances",
+            "add up to 1",
+        ),
         ("count = 3 }", "count = [0, 0] }", "grow.limbs.to.all.count", "no round has an endpoint"),
         ("count = 3 }", "count = 2.5 }", "grow.limbs.to.all.count", "whole numbers"),
         ("count = 8,", "count = [8, 3],", "grow.trunk.to.crown.count", "needs `repeat`"),
@@ -79,8 +94,18 @@ fn bad_input_is_one_clear_error() {
         ("repeat = { times = 2, size = 0.6 }\n", "", "grow.limbs", ""),
         ("width.length = { z = 0.4 }", "width.pipe = { }", "grow.limbs.width", "same kind"),
         ("from.ends = \"trunk\"\nrepeat", "from.ends = \"limbs\"\nrepeat", "grow.limbs", "waits for itself"),
-        ("grow = [\"trunk\", \"limbs\"]", "grow = [\"trunk\"]\nleaves.l = { shape = \"oka\", size = 1, count = 1, along = 0, material = \"bark\" }", "leaves.l.shape", "did you mean `oak`"),
-        ("spacing = 0.3 }\n[grow.trunk]", "spacing = 0.3, sectors = 7 }\n[grow.trunk]", "space.tuft.nodes.scatter", "6, 8 or 24"),
+        (
+            "grow = [\"trunk\", \"limbs\"]",
+            "grow = [\"trunk\"]\nleaves.l = { shape = \"oka\", size = 1, count = 1, along = 0, material = \"bark\" }",
+            "leaves.l.shape",
+            "did you mean `oak`",
+        ),
+        (
+            "spacing = 0.3 }\n[grow.trunk]",
+            "spacing = 0.3, sectors = 7 }\n[grow.trunk]",
+            "space.tuft.nodes.scatter",
+            "6, 8 or 24",
+        ),
     ] {
         assert!(TREE.contains(from), "{from}");
         fs::write(at.join("tree.toml"), TREE.replacen(from, to, 1)).unwrap();
@@ -122,7 +147,13 @@ fn levels_and_leaves_are_declared() {
     let folder = tempfile::tempdir().unwrap();
     succeed_in(folder.path(), &["export", "oak-summer", "--to", "pov", "-o", "."]);
     let inc = fs::read_to_string(folder.path().join("oak-summer.inc")).unwrap();
-    for name in ["Oak_summer_Tree_Level_0", "Oak_summer_Tree_Level_3", "Oak_summer_Tree_Leaf", "Oak_summer_Tree_Leaf_One", "Oak_summer"] {
+    for name in [
+        "Oak_summer_Tree_Level_0",
+        "Oak_summer_Tree_Level_3",
+        "Oak_summer_Tree_Leaf",
+        "Oak_summer_Tree_Leaf_One",
+        "Oak_summer",
+    ] {
         assert!(inc.contains(&format!("#declare {name} =")), "{name} is missing");
     }
     let leaves = inc.matches("object{Oak_summer_Tree_Leaf_One matrix<").count();
@@ -154,7 +185,10 @@ fn trees_become_closed_meshes() {
 fn trees_compete_for_light() {
     let lean = |alone: bool| {
         let far = [("grow.right.from.at", "[[41.7, 0, 0]]"), ("shape.right-crown.sector.at", "[41.7, 0, 2]")];
-        let stem = ("space.right.shape", r#"{ union = [{ cylinder = { from = [41.7, 0, 0], to = [41.7, 0, 2.3], radius = 0.25 } }, "right-crown"] }"#);
+        let stem = (
+            "space.right.shape",
+            r#"{ union = [{ cylinder = { from = [41.7, 0, 0], to = [41.7, 0, 2.3], radius = 0.25 } }, "right-crown"] }"#,
+        );
         let changes: Vec<_> = if alone { far.into_iter().chain([stem]).collect() } else { Vec::new() };
         let scene = embedded("two-trees", &changes);
         let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();

@@ -9,6 +9,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use lichtenberg::files::{Rgba, decode_png};
+use rayon::prelude::*;
 use support::{lichtenberg, require_povray, run_in, scene_names, succeed_in, text};
 
 /// Runs povray itself on `scene` in `folder`; it must succeed without a warning.
@@ -34,17 +35,17 @@ fn covered(picture: &Rgba) -> f64 {
 #[test]
 fn every_scene_renders_without_a_warning() {
     require_povray();
-    let folder = tempfile::tempdir().unwrap();
-    for name in scene_names() {
+    scene_names().par_iter().for_each(|name| {
+        let folder = tempfile::tempdir().unwrap();
         let output =
-            run_in(folder.path(), &["render", &name, "--with", "povray", "--size", "160x120", "-o", "{scene}.png"]);
+            run_in(folder.path(), &["render", name, "--with", "povray", "--size", "160x120", "-o", "{scene}.png"]);
         let said = text(&output.stderr);
         assert!(output.status.success() && !said.contains("Warning"), "{name}: {said}");
         let path = folder.path().join(text(&output.stdout).trim());
         let picture = decode_png(&fs::read(&path).unwrap()).unwrap();
         assert_eq!((picture.width, picture.height), (160, 120));
         assert!(covered(&picture) > 0.005, "{name} is blank");
-    }
+    });
 }
 
 /// The include file works untouched in somebody else's y-up scene: twice, upright on the ground, and from another

@@ -13,6 +13,7 @@ use lichtenberg::files::{Rgba, decode_linear, decode_png};
 use lichtenberg::math::Progress;
 use lichtenberg::scene::{grow, model};
 use lichtenberg::trace::{Look, View, World, render};
+use rayon::prelude::*;
 use support::{embedded, lichtenberg, require_povray, run_in, scene_names, succeed_in, text};
 
 fn picture(path: &Path) -> Rgba {
@@ -43,26 +44,31 @@ fn needs_nothing_else() {
 }
 
 /// Every scene in space agrees with the real povray in the exact look: no pixel is off by more than 1/255, but for one
-/// in a thousand at silhouettes. Without samples and with, `+A0.0 +AM1 +R3`.
+/// in a thousand at silhouettes. Without samples, and with `+A0.0 +AM1 +R3` where scenes differ in more than their tree.
 #[test]
 fn agrees_with_povray_to_the_pixel() {
     require_povray();
-    let folder = tempfile::tempdir().unwrap();
-    let mut told = Vec::new();
-    for name in scene_names() {
-        if embedded(&name, &[]).is_flat {
-            continue;
+    let is_panel = |name: &str| name.starts_with("papers/2012");
+    let mut work: Vec<(String, &str)> = Vec::new();
+    for name in scene_names().into_iter().filter(|name| !embedded(name, &[]).is_flat) {
+        if !is_panel(&name) {
+            work.push((name.clone(), "9"));
         }
-        for samples in ["1", "9"] {
-            let common = ["render", &name, "--look", "exact", "--size", "160x120", "--samples", samples];
+        work.push((name, "1"));
+    }
+    let told: Vec<String> = work
+        .par_iter()
+        .map(|(name, samples)| {
+            let folder = tempfile::tempdir().unwrap();
+            let common = ["render", name, "--look", "exact", "--size", "160x120", "--samples", samples];
             succeed_in(folder.path(), &[&common[..], &["-o", "ours.png"]].concat());
             succeed_in(folder.path(), &[&common[..], &["--with", "povray", "-o", "theirs.png"]].concat());
             let [ours, theirs] = ["ours.png", "theirs.png"].map(|f| picture(&folder.path().join(f)));
             let off = differences(&ours, &theirs).iter().filter(|d| **d > 1).count();
-            told.push(format!("{name} {samples}: {off} of 19200 pixels"));
-        }
-    }
-    assert!(told.len() >= 14, "every scene in space");
+            format!("{name} {samples}: {off} of 19200 pixels")
+        })
+        .collect();
+    assert!(told.len() >= 70, "every scene in space");
     let worst = |line: &String| line.split(' ').nth(2).and_then(|n| n.parse::<u32>().ok()).unwrap_or(u32::MAX);
     assert!(told.iter().all(|line| worst(line) <= 19), "{}", told.join("\n"));
 }

@@ -15,8 +15,11 @@ pub struct NoMesh(pub String);
 /// A triangle's corners in the world, and their places in a texture, if there are any.
 type Face = ([DVec3; 3], Option<[[f64; 2]; 3]>);
 
+/// An object's name, the digits of its numbers, and its faces.
+type Named<'a> = (&'a str, Digits, Vec<Face>);
+
 /// All faces of each object, wherever it stands.
-fn objects(model: &Model) -> Result<Vec<(&str, Digits, Vec<Face>)>, NoMesh> {
+fn objects(model: &Model) -> Result<Vec<Named<'_>>, NoMesh> {
     let mut all = Vec::new();
     for object in &model.objects {
         if !object.balls.is_empty() {

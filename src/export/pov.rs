@@ -179,7 +179,11 @@ impl<'a> Pov<'a> {
             foot: vector(to_pov(object.instances[0].at), object.digits),
             places: object.instances[1..].iter().map(|place| placed(place, object.digits)).collect(),
             // A union of fewer than two objects warns.
-            keyword: if object.balls.len() + object.segments.len() + object.poses.len() < 2 { "object" } else { "union" },
+            keyword: if object.balls.len() + object.segments.len() + object.poses.len() < 2 {
+                "object"
+            } else {
+                "union"
+            },
             shadow: object.shadow,
             texture: match model.materials[object.material].1.pattern {
                 Some(_) => format!("{}_Plain", material_id(object.material)),

@@ -22,7 +22,8 @@ pub fn decode_mesh(name: &str, bytes: &[u8]) -> Result<Mesh, String> {
 /// A sentence: no PLY, no faces, or faces that name corners that are not there.
 pub fn decode_ply(bytes: &[u8]) -> Result<Mesh, String> {
     // Rows are read one by one, so that a header that promises too many runs out of bytes instead of memory.
-    let ply = Parser::<DefaultElement>::new().read_ply(&mut Cursor::new(bytes)).map_err(|e| format!("it is no PLY: {e}"))?;
+    let ply =
+        Parser::<DefaultElement>::new().read_ply(&mut Cursor::new(bytes)).map_err(|e| format!("it is no PLY: {e}"))?;
     let number = |property: Option<&Property>| -> Option<f64> {
         Some(match *property? {
             Property::Char(x) => f64::from(x),
@@ -150,7 +151,11 @@ mod tests {
         let mesh = decode_ply(square.as_bytes()).unwrap();
         assert_eq!((mesh.points.len(), mesh.triangles.len()), (4, 2));
         assert_eq!(mesh.points[2], DVec3::new(1.0, 2.0, 0.0));
-        for bad in [square.replace("2 3\n", "2 9\n"), square.replace("ply", "plx"), head.replace("vertex 4", "vertex 4000000000")] {
+        for bad in [
+            square.replace("2 3\n", "2 9\n"),
+            square.replace("ply", "plx"),
+            head.replace("vertex 4", "vertex 4000000000"),
+        ] {
             assert!(decode_ply(bad.as_bytes()).is_err(), "{bad}");
         }
     }

@@ -265,7 +265,8 @@ impl Lookup<'_> {
             &SolidSpec::Capsule { from, to, radius } => Solid::Capsule { from: from.0, to: to.0, radius },
             &SolidSpec::Cone { from, to, radii } => {
                 ends(from.0, to.0, "a cone")?;
-                return Shape::cone(from.0, to.0, radii).ok_or_else(|| "a cone needs a radius above 0 at one end".to_owned());
+                return Shape::cone(from.0, to.0, radii)
+                    .ok_or_else(|| "a cone needs a radius above 0 at one end".to_owned());
             }
             SolidSpec::Sector { at, toward, angle, radius } => {
                 let at = at.map_or(DVec3::ZERO, |p| p.0);
@@ -301,4 +302,3 @@ impl Lookup<'_> {
         }))
     }
 }
-

@@ -49,8 +49,16 @@ impl<'a> Neighbourhood<'a> {
             side *= 1.25;
         }
         let size = size(side).map(|s| s as i32);
-        let mut own =
-            Self { nodes, owners, origin: low, side, size, starts: Vec::new(), members: Vec::new(), levels: Vec::new() };
+        let mut own = Self {
+            nodes,
+            owners,
+            origin: low,
+            side,
+            size,
+            starts: Vec::new(),
+            members: Vec::new(),
+            levels: Vec::new(),
+        };
         let count = size.iter().map(|&s| s as usize).product::<usize>();
         let cells: Vec<u32> = nodes.iter().map(|&p| own.index(own.cell(p)) as u32).collect();
         // A counting sort keeps the order of nodes within a cell.

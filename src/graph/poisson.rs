@@ -177,19 +177,18 @@ impl<'a> Block<'a> {
         let low = place.map(|b| b * BLOCK);
         let size = [0, 1, 2].map(|axis| BLOCK.min(cells.size[axis] - low[axis]));
         let width = size.map(|s| (s + 2 * HALO) as usize);
-        let mut own =
-            Self {
-                cells,
-                apart: spacing * spacing,
-                low,
-                size,
-                strides: [width[0], width[0] * width[1]],
-                held: vec![0; width[0] * width[1] * width[2]],
-                rows: vec![[0; 2]; width[1] * width[2]],
-                nodes: Vec::new(),
-                first: 0,
-                waiting: Vec::new(),
-            };
+        let mut own = Self {
+            cells,
+            apart: spacing * spacing,
+            low,
+            size,
+            strides: [width[0], width[0] * width[1]],
+            held: vec![0; width[0] * width[1] * width[2]],
+            rows: vec![[0; 2]; width[1] * width[2]],
+            nodes: Vec::new(),
+            first: 0,
+            waiting: Vec::new(),
+        };
         let range = |axis: usize| (low[axis] - HALO).max(0)..(low[axis] + size[axis] + HALO).min(cells.size[axis]);
         for z in range(2) {
             for y in range(1) {
@@ -293,7 +292,8 @@ impl<'a> Block<'a> {
 
     /// Half the diagonal of a cube (in the plane, a square) of this side, or a hair more.
     fn half_diagonal(&self, side: f64) -> f64 {
-        side * if self.cells.is_plane { 0.707_107 } else { 0.866_026 }
+        let diagonal = libm::sqrt(if self.cells.is_plane { 2.0 } else { 3.0 });
+        side * diagonal * (0.5 + 1e-6)
     }
 
     /// Is the cell not known to be taken?

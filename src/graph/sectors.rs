@@ -55,7 +55,13 @@ impl Sectors {
         let orthant = || usize::from(d.x < 0.0) | usize::from(d.y < 0.0) << 1 | usize::from(d.z < 0.0) << 2;
         let axis = || {
             let a = d.abs();
-            if a.x >= a.y && a.x >= a.z { 0 } else if a.y >= a.z { 1 } else { 2 }
+            if a.x >= a.y && a.x >= a.z {
+                0
+            } else if a.y >= a.z {
+                1
+            } else {
+                2
+            }
         };
         match self {
             Self::Rays(rays) => {
@@ -76,9 +82,8 @@ impl Sectors {
     /// is no.
     #[must_use]
     pub fn may_hold(&self, i: usize, low: DVec3, high: DVec3) -> bool {
-        let orthant = |i: usize| {
-            (0..3).all(|axis| if i >> axis & 1 == 0 { high[axis] >= 0.0 } else { low[axis] <= 0.0 })
-        };
+        let orthant =
+            |i: usize| (0..3).all(|axis| if i >> axis & 1 == 0 { high[axis] >= 0.0 } else { low[axis] <= 0.0 });
         let face = |axis: usize, is_back: bool| if is_back { low[axis] <= 0.0 } else { high[axis] >= 0.0 };
         match self {
             Self::Rays(rays) => {

@@ -25,7 +25,8 @@ pub(super) fn choose(
     let owners = (0..graph.len() as u32).map(|i| graph.owner(Node(i))).max().unwrap_or(0);
     let quota = |owner: u8| {
         let (owner, owners) = (u32::from(owner), u32::from(owners));
-        if owners == 0 { count } else { count / owners + u32::from(owner <= count % owners) }
+        let share = |owners: std::num::NonZeroU32| count / owners + u32::from(owner <= count % owners);
+        std::num::NonZeroU32::new(owners).map_or(count, share)
     };
     let mut given = vec![0_u32; usize::from(owners) + 1];
     let mut chosen = Vec::new();

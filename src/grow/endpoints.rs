@@ -245,7 +245,9 @@ fn reject<const N: usize>(
 }
 
 fn no_room(placed: usize, count: u32, apart: f64) -> String {
-    format!("only {placed} of {count} endpoints could be placed: make `inside` larger, `apart` ({apart}) smaller, or ask for fewer")
+    format!(
+        "only {placed} of {count} endpoints could be placed: make `inside` larger, `apart` ({apart}) smaller, or ask for fewer"
+    )
 }
 
 /// Points with room around them, in cells as wide as the least distance.

@@ -77,9 +77,8 @@ impl Canopy {
 
     /// How many of the rays to `sky` from `p` are blocked.
     fn blocked(&self, p: DVec3, sky: &[DVec3], near: f64) -> u32 {
-        let is_blocked = |&&direction: &&DVec3| {
-            self.cones.is_blocked(&Ray { origin: p, direction, near, far: f64::INFINITY })
-        };
+        let is_blocked =
+            |&&direction: &&DVec3| self.cones.is_blocked(&Ray { origin: p, direction, near, far: f64::INFINITY });
         sky.iter().filter(is_blocked).count() as u32
     }
 }
@@ -206,8 +205,13 @@ mod tests {
         skeleton.add_path(&mut known, 0, row);
         let canopy = Canopy::new(&[&skeleton], 1.0);
         let shade = ShadeSpec { clump: 1.0, rays: 64, dies: 0.2, open: crate::math::Degrees(75.0) };
-        let influence =
-            Influence { name: "shade".to_owned(), rank: Rank::Shade(shade), count: Some([0, 5]), loss: None, size: None };
+        let influence = Influence {
+            name: "shade".to_owned(),
+            rank: Rank::Shade(shade),
+            count: Some([0, 5]),
+            loss: None,
+            size: None,
+        };
         let ends = [(DVec3::ZERO, DVec3::Z), (DVec3::new(0.0, 40.0, 0.0), DVec3::Z)];
         let shares = influence.deal(&ends, Some(&canopy), Stream::new(1, "deal"));
         assert!(shares[0].dies && !shares[1].dies && shares[0].count <= shares[1].count);

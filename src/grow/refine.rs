@@ -181,16 +181,11 @@ impl Round<'_> {
             renamed[end as usize] = fine.paths.last().map_or(from, |path| path.end);
             fine.paths.truncate(paths);
         }
-        fine.paths =
-            coarse
-                .paths
-                .iter()
-                .map(|path| Path {
-                    end: renamed[path.end as usize],
-                    root: renamed[path.root as usize],
-                    class: path.class,
-                })
-                .collect();
+        fine.paths = coarse
+            .paths
+            .iter()
+            .map(|path| Path { end: renamed[path.end as usize], root: renamed[path.root as usize], class: path.class })
+            .collect();
         Ok(fine)
     }
 

@@ -123,7 +123,8 @@ impl<'a> Rounds<'a> {
         seed: u64,
         grown: &[Option<&Skeleton>],
     ) -> Result<Self, GrowError> {
-        let wrong = |key: &str, message: String| GrowError::Scene { place: format!("grow.{}.{key}", step.name), message };
+        let wrong =
+            |key: &str, message: String| GrowError::Scene { place: format!("grow.{}.{key}", step.name), message };
         let table = space.table().map_err(|error| GrowError::Scene {
             place: format!("space.{}.weights", step.space_name),
             message: error.to_string(),
@@ -235,7 +236,8 @@ impl<'a> Rounds<'a> {
             let dealt = influence.deal(&places, canopy, stream.nth(i));
             shares.iter_mut().zip(dealt).for_each(|(share, dealt)| *share = share.with(dealt));
         }
-        let counted: f64 = ends.iter().zip(&shares).map(|(end, share)| f64::from(self.counts(end, share).iter().sum::<u32>())).sum();
+        let counted: f64 =
+            ends.iter().zip(&shares).map(|(end, share)| f64::from(self.counts(end, share).iter().sum::<u32>())).sum();
         let most = f64::min(MOST_ENDS, max_memory as f64 / END_BYTES);
         if self.grown.skeleton.paths.len() as f64 + counted > most {
             let message = format!(
@@ -270,8 +272,7 @@ impl<'a> Rounds<'a> {
 
     /// Makes the sets of nodes that `ends` take.
     fn make_sets(&mut self, ends: &[End]) -> Result<(), GrowError> {
-        let mut wanted: Vec<usize> =
-            ends.iter().map(|end| set_of(end)).filter(|&set| self.sets[set].is_none()).collect();
+        let mut wanted: Vec<usize> = ends.iter().map(set_of).filter(|&set| self.sets[set].is_none()).collect();
         wanted.sort_unstable();
         wanted.dedup();
         let stream = Stream::new(self.seed, &format!("space/{}", self.space.stream));
@@ -496,7 +497,9 @@ mod tests {
         }
         // A loss of 5 ends it too: 0.3, and a fifth of 0.7.
         let expected = [0.0, 0.14, 0.14, 0.14, 0.14, 0.44].map(|share| share * f64::from(n));
-        let chi2: f64 = (1..6).map(|i| (f64::from(counts[i]) - expected[i]) * (f64::from(counts[i]) - expected[i]) / expected[i]).sum();
+        let chi2: f64 = (1..6)
+            .map(|i| (f64::from(counts[i]) - expected[i]) * (f64::from(counts[i]) - expected[i]) / expected[i])
+            .sum();
         assert!(counts[0] == 0 && chi2 < 18.5, "{counts:?}: chi-squared {chi2} over 4 degrees of freedom");
         let spec = LifespanSpec { first: 5, loss: Loss::Chances(vec![[0.25, 1.0], [0.75, 3.0]]) };
         let threes = (0..n).filter(|_| spec.lose(5, &mut random) == 3).count() as f64 / f64::from(n);

@@ -121,21 +121,11 @@ impl ScatterSpace {
     ///
     /// # Errors
     /// [`ScatterError`].
-    pub(super) fn scatter(
-        &self,
-        table: &WeightTable,
-        seed: u64,
-        fixed: &[DVec3],
-    ) -> Result<Scattered, ScatterError> {
+    pub(super) fn scatter(&self, table: &WeightTable, seed: u64, fixed: &[DVec3]) -> Result<Scattered, ScatterError> {
         let stream = Stream::new(seed, &format!("space/{}", self.stream));
         let weigh = |graph: &Scatter| graph.weigh(table, &self.fields, |p| p, &stream);
-        let plan = ScatterPlan {
-            spacing: self.spacing,
-            is_plane: self.is_plane,
-            joining: &self.joining,
-            fixed,
-            owner: None,
-        };
+        let plan =
+            ScatterPlan { spacing: self.spacing, is_plane: self.is_plane, joining: &self.joining, fixed, owner: None };
         let Some(clusters) = &self.clusters else {
             let open = Open { shape: &self.shape, forbid: self.forbid.as_ref(), fixed };
             let graph = Scatter::new(&plan, &open, &stream)?;

@@ -43,7 +43,8 @@ impl Step {
         show: &[MarkKind],
         progress: &Progress,
     ) -> Result<Grown, GrowError> {
-        let in_space = |message: String| GrowError::Scene { place: format!("space.{}.nodes", self.space_name), message };
+        let in_space =
+            |message: String| GrowError::Scene { place: format!("space.{}.nodes", self.space_name), message };
         let starts = self.start_places(grown)?;
         let mut fixed = starts.clone();
         for set in &self.endpoints {
@@ -55,7 +56,9 @@ impl Step {
         }
         for (p, key) in fixed.iter().zip(0..).map(|(p, i)| (p, if i < starts.len() { "from" } else { "to" })) {
             let is_open = space.shape.margin(*p) <= space.spacing || space.clusters.is_some();
-            if matches!(self.source, Source::At(_)) && !(is_open && space.forbid.as_ref().is_none_or(|f| !f.contains(*p))) {
+            if matches!(self.source, Source::At(_))
+                && !(is_open && space.forbid.as_ref().is_none_or(|f| !f.contains(*p)))
+            {
                 let message = format!("the point {p} is outside the space or where nodes are forbidden");
                 return Err(GrowError::Scene { place: format!("grow.{}.{key}", self.name), message });
             }
@@ -203,7 +206,8 @@ impl Step {
             Placement::Random { inside, .. } => inside.as_ref(),
             _ => None,
         }));
-        let ends: Vec<Node> = nodes.iter().copied().chain(lists.iter().filter_map(|(list, _)| list.last().copied())).collect();
+        let ends: Vec<Node> =
+            nodes.iter().copied().chain(lists.iter().filter_map(|(list, _)| list.last().copied())).collect();
         let marks = scattered_marks(graph, &shapes, &ends, show).map_err(in_space)?;
         Ok(Grown {
             name: self.name.clone(),
@@ -220,7 +224,8 @@ impl Step {
 
     /// Where paths start.
     fn start_places(&self, grown: &[Option<&Skeleton>]) -> Result<Vec<DVec3>, GrowError> {
-        let wrong = |message: &str| GrowError::Scene { place: format!("grow.{}.from", self.name), message: message.to_owned() };
+        let wrong =
+            |message: &str| GrowError::Scene { place: format!("grow.{}.from", self.name), message: message.to_owned() };
         let places = match &self.source {
             Source::At(points) => points.clone(),
             // Known once there are nodes.

@@ -197,9 +197,8 @@ impl Step {
         let starts = self.starts(&lattice, grown)?;
         let mut wanted: Vec<Wanted<'_>> = Vec::new();
         for set in &self.endpoints {
-            let nodes = set.placement.place(&lattice, &space.shape, seed, grown).map_err(|message| GrowError::Scene {
-                place: format!("grow.{}.to.{}", self.name, set.name),
-                message,
+            let nodes = set.placement.place(&lattice, &space.shape, seed, grown).map_err(|message| {
+                GrowError::Scene { place: format!("grow.{}.to.{}", self.name, set.name), message }
             })?;
             wanted.extend(nodes.into_iter().map(|(node, at)| (node, at, set)));
         }
@@ -219,7 +218,8 @@ impl Step {
                     PlanError::TooWide { .. } => in_space(".weights", error.to_string()),
                 })?;
                 let (skeleton, dropped) = self.paths(&plan, &starts, &wanted)?;
-                let marks = construction(self, space, &plan, &nodes, show).map_err(|message| in_space(".nodes", message))?;
+                let marks =
+                    construction(self, space, &plan, &nodes, show).map_err(|message| in_space(".nodes", message))?;
                 (skeleton, dropped, plan.settled() as u64, marks)
             }
             Method::Dbm(dbm) => {
@@ -386,11 +386,7 @@ impl Step {
     }
 
     /// Radii, smoothing, ages and branches.
-    pub(super) fn finish(
-        &self,
-        mut skeleton: Skeleton,
-        grown: &[Option<&Skeleton>],
-    ) -> Result<Skeleton, GrowError> {
+    pub(super) fn finish(&self, mut skeleton: Skeleton, grown: &[Option<&Skeleton>]) -> Result<Skeleton, GrowError> {
         if self.repeat.is_none() {
             skeleton.root_paths();
         }

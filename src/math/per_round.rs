@@ -59,7 +59,11 @@ impl<'de> Deserialize<'de> for PerRound {
         }
         if value.is_array() {
             let numbers: Vec<f64> = serde_json::from_value(value).map_err(D::Error::custom)?;
-            return if numbers.is_empty() { Err(D::Error::custom("list at least one number")) } else { Ok(Self::Each(numbers)) };
+            return if numbers.is_empty() {
+                Err(D::Error::custom("list at least one number"))
+            } else {
+                Ok(Self::Each(numbers))
+            };
         }
         let Ratio { first, ratio } = serde_json::from_value(value).map_err(D::Error::custom)?;
         Ok(Self::Ratio { first, ratio })

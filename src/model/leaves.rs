@@ -92,7 +92,8 @@ fn golden() -> Degrees {
 /// # Errors
 /// A sentence where the outline encloses nothing.
 pub fn leaf_mesh(outline: &[DVec2], fold: f64) -> Result<Mesh, String> {
-    let foot = outline.iter().copied().reduce(|a, b| if b.y < a.y { b } else { a }).ok_or("the outline has no points")?;
+    let foot =
+        outline.iter().copied().reduce(|a, b| if b.y < a.y { b } else { a }).ok_or("the outline has no points")?;
     let top = outline.iter().map(|p| p.y - foot.y).fold(0.0, f64::max);
     if top <= 0.0 {
         return Err("the outline has no height".to_owned());
@@ -164,12 +165,8 @@ impl LeavesSpec {
     pub fn place(&self, skeletons: &[&Skeleton], foot: DVec3, digits: Digits, stream: &Stream) -> Vec<Pose> {
         let bits = |p: DVec3| p.to_array().map(f64::to_bits);
         // Ends from which another step grew are no ends.
-        let roots: std::collections::HashSet<[u64; 3]> = skeletons
-            .iter()
-            .flat_map(|s| &s.nodes)
-            .filter(|n| n.parent.is_none())
-            .map(|n| bits(n.position))
-            .collect();
+        let roots: std::collections::HashSet<[u64; 3]> =
+            skeletons.iter().flat_map(|s| &s.nodes).filter(|n| n.parent.is_none()).map(|n| bits(n.position)).collect();
         let canopy = self.light.map(|light| (light, Canopy::new(skeletons, light.clump)));
         let directions = sky(16, 1.2);
         let mut poses = Vec::new();

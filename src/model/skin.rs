@@ -142,7 +142,12 @@ impl Object {
         }
         let of = |level: u16| {
             let mut renamed: HashMap<u32, u32> = HashMap::new();
-            let mut own = Self { name: format!("{}_level_{level}", self.name), balls: Vec::new(), segments: Vec::new(), ..self.clone() };
+            let mut own = Self {
+                name: format!("{}_level_{level}", self.name),
+                balls: Vec::new(),
+                segments: Vec::new(),
+                ..self.clone()
+            };
             let mut put = |own: &mut Self, i: u32| {
                 *renamed.entry(i).or_insert_with(|| {
                     own.balls.push(self.balls[i as usize]);

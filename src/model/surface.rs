@@ -77,7 +77,8 @@ fn limbs(skeletons: &[&Skeleton], foot: DVec3) -> Vec<Limb> {
                     let start = parent.map_or(here, |p| (p.position - foot, node.radius.min(p.radius)));
                     let found = places.get(&bits(start.0)).copied();
                     // What starts at another's tip goes on from it.
-                    let goes_on = found.filter(|&(limb, at)| parent.is_none() && at + 1 == limbs[limb].axis.len() && at > 0);
+                    let goes_on =
+                        found.filter(|&(limb, at)| parent.is_none() && at + 1 == limbs[limb].axis.len() && at > 0);
                     let limb = goes_on.map_or(limbs.len(), |(limb, _)| limb);
                     if goes_on.is_none() {
                         limbs.push(Limb { axis: vec![start], from: found });
@@ -217,9 +218,7 @@ impl Builder {
             let (centre, ..) = at(limb, lengths, (patch.low + patch.high) * 0.5);
             (self.facing(a, b, count, patch, centre), patch)
         });
-        let is_open = |k: usize| {
-            open.is_some_and(|(first, patch)| (k + count - first) % count < patch.columns)
-        };
+        let is_open = |k: usize| open.is_some_and(|(first, patch)| (k + count - first) % count < patch.columns);
         for k in (0..count).filter(|&k| !is_open(k)) {
             let next = (k + 1) % count;
             let corner = |ring: &Ring, k: usize| ring.first + k as u32;
@@ -312,11 +311,8 @@ fn at(limb: &Limb, lengths: &[f64], s: f64) -> (DVec3, f64, DVec3) {
     let share = ((s - lengths[i - 1]) / (lengths[i] - lengths[i - 1]).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
     let way = (b - a).normalize_or(DVec3::Z);
     // At a corner between both of its sides.
-    let way = if share < 1e-9 && i > 1 {
-        (way + (a - limb.axis[i - 2].0).normalize_or(way)).normalize_or(way)
-    } else {
-        way
-    };
+    let way =
+        if share < 1e-9 && i > 1 { (way + (a - limb.axis[i - 2].0).normalize_or(way)).normalize_or(way) } else { way };
     (a + (b - a) * share, ra + (rb - ra) * share, way)
 }
 
@@ -377,7 +373,8 @@ mod tests {
         assert_eq!(pieces, 2, "the stem with its two limbs, and the twig that starts within");
         assert_eq!((mesh.normals.len(), mesh.uvs.len()), (mesh.points.len(), mesh.triangles.len()));
         // Normals point out of the solid.
-        let out = mesh.points.iter().zip(&mesh.normals).filter(|(p, n)| closed.distance(**p + **n * 0.01) > 0.0).count();
+        let out =
+            mesh.points.iter().zip(&mesh.normals).filter(|(p, n)| closed.distance(**p + **n * 0.01) > 0.0).count();
         assert!(out * 100 > mesh.points.len() * 97, "{out} of {}", mesh.points.len());
     }
 }

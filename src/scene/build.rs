@@ -8,7 +8,8 @@ use super::{LightsSpec, Resolved, SceneError};
 use crate::grow::{Canopy, GrowError, Grown, Mark, MarkKind, Rounds, Space, Step};
 use crate::math::{Cancelled, Colour, DVec3, Progress, Stream};
 use crate::model::{
-    Camera, Ground, Instance, Light, Material, Model, Object, Projection, Skin, SkinError, Stroke, foot, shining, to_world,
+    Camera, Ground, Instance, Light, Material, Model, Object, Projection, Skin, SkinError, Stroke, foot, shining,
+    to_world,
 };
 use crate::skeleton::{Part, Plant, Skeleton};
 
@@ -62,7 +63,8 @@ pub fn grow(scene: &Resolved, show: &[MarkKind], max_memory: u64, progress: &Pro
         };
         let ready: Vec<usize> = (0..grown.len()).filter(is_ready).collect();
         let earlier: Vec<Option<&Skeleton>> = grown.iter().map(|g| g.as_ref().map(|g| &g.skeleton)).collect();
-        let (repeated, round): (Vec<usize>, Vec<usize>) = ready.into_iter().partition(|&i| scene.steps[i].repeat.is_some());
+        let (repeated, round): (Vec<usize>, Vec<usize>) =
+            ready.into_iter().partition(|&i| scene.steps[i].repeat.is_some());
         for i in repeated {
             let step = &scene.steps[i];
             if let (Some(repeat), Space::Scatter(space)) = (&step.repeat, &step.space) {

@@ -85,8 +85,8 @@ pub enum Quantity {
     Directions,
     /// How different ways to the ends are in length.
     LengthVariation,
-    /// How unevenly ends fill space.
-    Clumping,
+    /// How much room there is between ends.
+    Gaps,
     /// How long the paths of a level are, over those of the level before.
     LevelRatio,
     /// How far to the right (along x) ends are, as a share of how far they spread.
@@ -112,7 +112,7 @@ impl Quantity {
         match self {
             Self::Directions => m.directions as f64,
             Self::LengthVariation => m.length_variation,
-            Self::Clumping => m.clumping,
+            Self::Gaps => m.gaps,
             Self::LevelRatio => m.level_ratio,
             Self::Lean => m.lean,
             Self::Strahler => m.strahler as f64,

@@ -35,15 +35,17 @@ impl Resolver<'_> {
             self.wrong(&at("size"), "sizes are above 0 in every round".to_owned());
         }
         let up = if matches!(space?, Space::Scatter(s) if s.is_plane) { DVec3::Y } else { DVec3::Z };
-        let turns: Vec<_> =
-            spec.turn.iter().map(|(name, turn)| self.turn(&at(&format!("turn.{name}")), turn, spec.times, up)).collect();
+        let turns: Vec<_> = spec
+            .turn
+            .iter()
+            .map(|(name, turn)| self.turn(&at(&format!("turn.{name}")), turn, spec.times, up))
+            .collect();
         let influences: Vec<_> = spec
             .influence
             .iter()
             .map(|(name, influence)| self.influence(&at(&format!("influence.{name}")), name, influence))
             .collect();
-        let lifespan =
-            spec.lifespan.clone().unwrap_or(LifespanSpec { first: spec.times, loss: Loss::default() });
+        let lifespan = spec.lifespan.clone().unwrap_or(LifespanSpec { first: spec.times, loss: Loss::default() });
         if let Loss::Chances(chances) = &lifespan.loss {
             let sum: f64 = chances.iter().map(|[chance, _]| chance).sum();
             let is_fine = chances.iter().all(|&[chance, loss]| chance >= 0.0 && (1.0..=64.0).contains(&loss));
@@ -118,7 +120,8 @@ impl Resolver<'_> {
     /// Widths of whole plants and their form belong together.
     pub(super) fn plant_width(&mut self, place: &str, spec: &StepSpec) {
         if spec.form.is_some() && spec.width.starts_plant() != Some(true) {
-            let message = "`form` belongs where a plant starts: with a width by `length` or `pipe` that gives `root`".to_owned();
+            let message =
+                "`form` belongs where a plant starts: with a width by `length` or `pipe` that gives `root`".to_owned();
             self.wrong(&format!("{place}.form"), message);
         }
     }

@@ -310,7 +310,8 @@ impl Resolver<'_> {
         let mesh = match &spec.mesh {
             Some(file) => {
                 let read = self.folder.read(file);
-                let mesh = read.and_then(|b| decode_mesh(file, &b).map_err(|error| format!("cannot read `{file}`: {error}")));
+                let mesh =
+                    read.and_then(|b| decode_mesh(file, &b).map_err(|error| format!("cannot read `{file}`: {error}")));
                 self.note(&format!("{place}.mesh"), mesh).map(Some)
             }
             None => Some(None),

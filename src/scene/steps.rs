@@ -310,7 +310,8 @@ impl Resolver<'_> {
             }
         }
         if rounds.is_some() && (spec.count.is_none() || spec.near.is_some()) {
-            let message = "a repeated step places its endpoints at random around each end: it needs `count`, and no `near`";
+            let message =
+                "a repeated step places its endpoints at random around each end: it needs `count`, and no `near`";
             self.wrong(place, message.to_owned());
             return None;
         }
@@ -356,8 +357,7 @@ impl Resolver<'_> {
                 Some(Placement::At(points.into_iter().map(raise).collect()))
             }
             _ => {
-                let message =
-                    "endpoints need exactly one of `count` (at random), `at` (a list), `through` (lists) and `sketch` (an SVG file)";
+                let message = "endpoints need exactly one of `count` (at random), `at` (a list), `through` (lists) and `sketch` (an SVG file)";
                 self.wrong(place, message.to_owned());
                 None
             }

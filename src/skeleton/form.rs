@@ -88,7 +88,8 @@ impl Plant {
                 let fork = self.nodes[p as usize].node;
                 let mut parent = renamed[p as usize];
                 if main[p as usize] != Some(i as u32) {
-                    let start = SkeletonNode { position: fork.position, parent: Some(parent), cost: fork.cost, ..own.node };
+                    let start =
+                        SkeletonNode { position: fork.position, parent: Some(parent), cost: fork.cost, ..own.node };
                     parent = nodes.len() as u32;
                     nodes.push(PlantNode { node: start, part: own.part, reach: own.reach + self.step(i) });
                 }
@@ -133,8 +134,7 @@ impl Plant {
                 if starts[i] {
                     self.nodes[i].node.position = self.nodes[p as usize].node.position;
                 } else if let Some(n) = next[i] {
-                    self.nodes[i].node.position =
-                        (before[p as usize] + before[i] * 2.0 + before[n as usize]) * 0.25;
+                    self.nodes[i].node.position = (before[p as usize] + before[i] * 2.0 + before[n as usize]) * 0.25;
                 }
             }
         }
@@ -296,7 +296,8 @@ impl Plant {
 /// itself: neighbours may be near or far.
 fn hermite([p0, p1, p2, p3]: [DVec3; 4], t: f64) -> DVec3 {
     let length = (p2 - p1).length();
-    let tangent = |before: DVec3, at: DVec3, after: DVec3| (way(before, at) + way(at, after)).normalize_or_zero() * length;
+    let tangent =
+        |before: DVec3, at: DVec3, after: DVec3| (way(before, at) + way(at, after)).normalize_or_zero() * length;
     let (m1, m2) = (tangent(p0, p1, p2), tangent(p1, p2, p3));
     let (t2, t3) = (t * t, t * t * t);
     p1 * (2.0 * t3 - 3.0 * t2 + 1.0) + m1 * (t3 - 2.0 * t2 + t) + p2 * (3.0 * t2 - 2.0 * t3) + m2 * (t3 - t2)

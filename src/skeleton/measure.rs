@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use rand::RngExt;
 use serde::Serialize;
 
 use super::{Orders, Path, Skeleton, dimension};
-use crate::math::DVec3;
+use crate::math::{DVec3, Stream};
 
 /// Numbers that describe a skeleton's form.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -42,8 +43,9 @@ pub struct Measurement {
     pub directions: usize,
     /// Standard deviation over mean of the lengths of ways from a root to an end from which nothing grew on.
     pub length_variation: f64,
-    /// How unevenly ends fill space: standard deviation over mean of their number in 4 by 4 by 4 boxes.
-    pub clumping: f64,
+    /// How much room there is between ends: the mean distance of the middle between two of them from the nearest end, over
+    /// the mean distance of two. Where ends fill a volume it is small, where they stand in clusters large.
+    pub gaps: f64,
     /// How far apart ends and the roots of their graphs are, each level over the one before (geometric mean).
     pub level_ratio: f64,
     /// Mean place of the ends along x, as a share of the greatest distance from the upright line through the root.
@@ -120,7 +122,7 @@ pub fn measure_from(skeleton: &Skeleton, foot: Option<DVec3>) -> Measurement {
     Measurement {
         directions: directions(skeleton, length),
         length_variation: variation(&ways),
-        clumping: clumping(&places),
+        gaps: gaps(&places),
         level_ratio: level_ratio(skeleton),
         lean: mean(places.iter().map(|p| p.x - root.x).sum(), places.len()) / widest,
         strahler: orders.highest(),
@@ -161,16 +163,20 @@ fn directions(skeleton: &Skeleton, length: f64) -> usize {
     bins.iter().filter(|&&sum| sum > length * 0.01).count()
 }
 
-fn clumping(places: &[DVec3]) -> f64 {
-    let low = places.iter().copied().reduce(DVec3::min).unwrap_or_default();
-    let high = places.iter().copied().reduce(DVec3::max).unwrap_or_default();
-    let size = (high - low).max(DVec3::splat(f64::MIN_POSITIVE));
-    let mut boxes = [0.0; 64];
-    for &p in places {
-        let [x, y, z] = ((p - low) / size * 4.0).to_array().map(|c| (c as usize).min(3));
-        boxes[x + 4 * y + 16 * z] += 1.0;
+/// Pairs of ends that [`gaps`] looks at.
+const PAIRS: usize = 500;
+
+fn gaps(places: &[DVec3]) -> f64 {
+    let mut random = Stream::new(0, "gaps");
+    let (mut room, mut apart) = (0.0, 0.0);
+    for _ in 0..if places.len() > 1 { PAIRS } else { 0 } {
+        let [a, b]: [DVec3; 2] = std::array::from_fn(|_| places[random.random_range(0..places.len())]);
+        let middle = (a + b) * 0.5;
+        let nearest = places.iter().map(|p| p.distance_squared(middle)).fold(f64::INFINITY, f64::min);
+        room += libm::sqrt(nearest);
+        apart += a.distance(b);
     }
-    variation(&boxes)
+    if apart > 0.0 { room / apart } else { 0.0 }
 }
 
 fn level_ratio(skeleton: &Skeleton) -> f64 {

@@ -23,10 +23,14 @@ impl Plant {
         }
         let mut is_gone = vec![false; self.nodes.len()];
         // From the root outwards: what a limb takes in may be taken in by the next.
-        let mut forks: Vec<u32> = (0..self.nodes.len() as u32).filter(|&i| self.nodes[i as usize].node.parent.is_none()).collect();
+        let mut forks: Vec<u32> =
+            (0..self.nodes.len() as u32).filter(|&i| self.nodes[i as usize].node.parent.is_none()).collect();
         while let Some(fork) = forks.pop() {
-            let mut side: Vec<(u32, u32)> =
-                children[fork as usize].iter().filter(|&&c| main[fork as usize] != Some(c)).map(|&c| (c, fork)).collect();
+            let mut side: Vec<(u32, u32)> = children[fork as usize]
+                .iter()
+                .filter(|&&c| main[fork as usize] != Some(c))
+                .map(|&c| (c, fork))
+                .collect();
             let mut kept: Vec<u32> = main[fork as usize].into_iter().collect();
             while let Some((node, from)) = side.pop() {
                 let p = self.nodes[node as usize].node.position;

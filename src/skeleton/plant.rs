@@ -282,7 +282,8 @@ mod tests {
 
     /// A trunk of 4 with an arm, and two limbs from the trunk's top.
     fn parts() -> (Skeleton, Skeleton) {
-        let mut trunk = skeleton(&[&[(0, 4), (0, 3), (0, 2), (0, 1), (0, 0)], &[(2, 2), (1, 2), (0, 2), (0, 1), (0, 0)]]);
+        let mut trunk =
+            skeleton(&[&[(0, 4), (0, 3), (0, 2), (0, 1), (0, 0)], &[(2, 2), (1, 2), (0, 2), (0, 1), (0, 0)]]);
         let mut limbs = skeleton(&[&[(1, 7), (1, 6), (0, 5), (0, 4)], &[(-1, 5), (0, 4)]]);
         trunk.root_paths();
         limbs.root_paths();
@@ -339,12 +340,8 @@ mod tests {
         let mut plant = Plant::new(&given);
         plant.thicken(&width);
         for i in 0..plant.nodes.len() as u32 {
-            let children: f64 = plant
-                .nodes
-                .iter()
-                .filter(|n| n.node.parent == Some(i))
-                .map(|n| n.node.radius * n.node.radius)
-                .sum();
+            let children: f64 =
+                plant.nodes.iter().filter(|n| n.node.parent == Some(i)).map(|n| n.node.radius * n.node.radius).sum();
             let own = plant.nodes[i as usize].node.radius;
             assert!(children == 0.0 || (own * own - children).abs() < 1e-12);
         }
