@@ -115,6 +115,7 @@ fn bad_input_is_one_clear_error() {
         if says.is_empty() {
             // Fine, or an error that says what to do: never a crash.
             assert!(matches!(output.status.code(), Some(0 | 2)), "{said}");
+            let _ = fs::remove_dir_all(at.join("out"));
             continue;
         }
         assert_eq!(output.status.code(), Some(2), "{to}: {said}");
@@ -148,15 +149,15 @@ fn levels_and_leaves_are_declared() {
     succeed_in(folder.path(), &["export", "oak-summer", "--to", "pov", "-o", "."]);
     let inc = fs::read_to_string(folder.path().join("oak-summer.inc")).unwrap();
     for name in [
-        "Oak_summer_Tree_Level_0",
-        "Oak_summer_Tree_Level_3",
-        "Oak_summer_Tree_Leaf",
-        "Oak_summer_Tree_Leaf_One",
-        "Oak_summer",
+        "Oak_Summer_Tree_Level_0",
+        "Oak_Summer_Tree_Level_3",
+        "Oak_Summer_Tree_Oak",
+        "Oak_Summer_Tree_Oak_One",
+        "Oak_Summer",
     ] {
         assert!(inc.contains(&format!("#declare {name} =")), "{name} is missing");
     }
-    let leaves = inc.matches("object{Oak_summer_Tree_Leaf_One matrix<").count();
+    let leaves = inc.matches("object{Oak_Summer_Tree_Oak_One matrix<").count();
     assert!(leaves > 10_000, "{leaves} leaves");
     // One mesh serves them all.
     assert_eq!(inc.matches("mesh2 {").count(), 1);

@@ -32,10 +32,13 @@ fn covered(picture: &Rgba) -> f64 {
     pixels.iter().filter(differs).count() as f64 / pixels.len() as f64
 }
 
+/// In the studio look; the figures of 2012, which differ in their trees alone, are rendered in the exact one by
+/// `tests/preview.rs`.
 #[test]
 fn every_scene_renders_without_a_warning() {
     require_povray();
-    scene_names().par_iter().for_each(|name| {
+    let names: Vec<String> = scene_names().into_iter().filter(|name| !name.starts_with("papers/2012")).collect();
+    names.par_iter().for_each(|name| {
         let folder = tempfile::tempdir().unwrap();
         let output =
             run_in(folder.path(), &["render", name, "--with", "povray", "--size", "160x120", "-o", "{scene}.png"]);

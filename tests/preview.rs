@@ -62,7 +62,9 @@ fn agrees_with_povray_to_the_pixel() {
             let folder = tempfile::tempdir().unwrap();
             let common = ["render", name, "--look", "exact", "--size", "160x120", "--samples", samples];
             succeed_in(folder.path(), &[&common[..], &["-o", "ours.png"]].concat());
-            succeed_in(folder.path(), &[&common[..], &["--with", "povray", "-o", "theirs.png"]].concat());
+            let output = run_in(folder.path(), &[&common[..], &["--with", "povray", "-o", "theirs.png"]].concat());
+            let said = text(&output.stderr);
+            assert!(output.status.success() && !said.contains("Warning"), "{name}: {said}");
             let [ours, theirs] = ["ours.png", "theirs.png"].map(|f| picture(&folder.path().join(f)));
             let off = differences(&ours, &theirs).iter().filter(|d| **d > 1).count();
             format!("{name} {samples}: {off} of 19200 pixels")

@@ -21,6 +21,21 @@ pub fn identifier(name: &str) -> String {
     out
 }
 
+/// The identifier of a part: `prefix`, and an identifier made of `name`, so short that POV-Ray's 40 characters leave room
+/// for a suffix of seven; none of `taken`. The prefix gives way first: names of parts end in what tells them apart.
+#[must_use]
+pub fn part_identifier(prefix: &str, name: &str, taken: &[String]) -> String {
+    const MOST: usize = 33;
+    let part = identifier(name);
+    let short = &prefix[..prefix.len().min((MOST - 1).saturating_sub(part.len()).max(4))];
+    let id = format!("{short}_{part}");
+    if id.len() <= MOST && !taken.contains(&id) {
+        return id;
+    }
+    let numbered = |number: usize| format!("{}_{number}", &id[..id.len().min(MOST - 4)]);
+    (1..).map(numbered).find(|id| !taken.contains(id)).unwrap_or(id)
+}
+
 /// `text` on one line of printable ASCII, without what could end a comment or a string.
 #[must_use]
 pub fn plain(text: &str) -> String {

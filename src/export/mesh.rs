@@ -2,15 +2,28 @@
 
 use std::io::{self, Write};
 
-use super::decimal::number;
 use super::identifier::plain;
 use crate::math::DVec3;
-use crate::model::{Digits, Model};
+use crate::model::{Digits, Model, Object};
+
+/// A number as every reader takes it: with a digit before the point.
+fn plain_number(x: f64, digits: Digits) -> String {
+    format!("{x:.*}", digits.0 as usize)
+}
 
 /// Why a model is no mesh.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("object `{0}` is made of spheres and cones: give it `skin = \"mesh\"`")]
-pub struct NoMesh(pub String);
+pub enum NoMesh {
+    /// Something is made of spheres and cones.
+    #[error("object `{0}` is made of spheres and cones: give it `skin = \"mesh\"`")]
+    Cones(String),
+    /// Copies are written out.
+    #[error("{0} triangles, every copy counted, are more than {MOST_FACES}: export fewer copies")]
+    TooMany(usize),
+}
+
+/// More triangles than this are refused: each takes about 200 bytes on its way.
+const MOST_FACES: usize = 20_000_000;
 
 /// A triangle's corners in the world, and their places in a texture, if there are any.
 type Face = ([DVec3; 3], Option<[[f64; 2]; 3]>);
@@ -20,10 +33,15 @@ type Named<'a> = (&'a str, Digits, Vec<Face>);
 
 /// All faces of each object, wherever it stands.
 fn objects(model: &Model) -> Result<Vec<Named<'_>>, NoMesh> {
+    let faces = |o: &Object| o.mesh.triangles.len() * o.poses.len().max(1) * o.instances.len();
+    let count: usize = model.objects.iter().map(faces).sum();
+    if count > MOST_FACES {
+        return Err(NoMesh::TooMany(count));
+    }
     let mut all = Vec::new();
     for object in &model.objects {
         if !object.balls.is_empty() {
-            return Err(NoMesh(object.name.clone()));
+            return Err(NoMesh::Cones(object.name.clone()));
         }
         let posed = object.poses.iter().map(|pose| Some(*pose));
         let poses: Vec<_> = if object.poses.is_empty() { vec![None] } else { posed.collect() };
@@ -65,7 +83,7 @@ pub fn write_obj(model: &Model, mut out: impl Write) -> io::Result<()> {
                     Some(&index) => index,
                     None => {
                         corners += 1;
-                        let [x, y, z] = [p.x, p.z, -p.y].map(|c| number(c, digits));
+                        let [x, y, z] = [p.x, p.z, -p.y].map(|c| plain_number(c, digits));
                         writeln!(out, "v {x} {y} {z}")?;
                         known.insert(p.to_array().map(f64::to_bits), corners);
                         corners
@@ -74,7 +92,7 @@ pub fn write_obj(model: &Model, mut out: impl Write) -> io::Result<()> {
                 line.push_str(&format!(" {index}"));
                 if let Some(uvs) = uvs {
                     places += 1;
-                    let [u, v] = uvs[i].map(|x| number(x, Digits(5)));
+                    let [u, v] = uvs[i].map(|x| plain_number(x, Digits(5)));
                     writeln!(out, "vt {u} {v}")?;
                     line.push_str(&format!("/{places}"));
                 }
@@ -113,7 +131,7 @@ pub fn write_ply(model: &Model, mut out: impl Write) -> io::Result<()> {
     writeln!(out, "property double x\nproperty double y\nproperty double z")?;
     writeln!(out, "element face {}\nproperty list uchar int vertex_indices\nend_header", triangles.len())?;
     for (p, digits) in points {
-        let [x, y, z] = p.to_array().map(|c| number(c, digits));
+        let [x, y, z] = p.to_array().map(|c| plain_number(c, digits));
         writeln!(out, "{x} {y} {z}")?;
     }
     for [a, b, c] in triangles {

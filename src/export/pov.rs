@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use serde::Serialize;
 
 use super::decimal::{number, vector};
-use super::identifier::{identifier, plain};
+use super::identifier::{identifier, part_identifier, plain};
 use super::pov_body::{write_body, write_mesh};
 use super::{TemplateError, Templates};
 use crate::math::{Colour, DVec3};
@@ -170,11 +170,14 @@ impl<'a> Pov<'a> {
         let digits = Digits::for_size(extent);
         let point = |p: DVec3| vector(to_pov(p), digits);
         let material_id = |i: usize| format!("{prefix}_{}_Texture", identifier(&model.materials[i].0));
+        let mut ids: Vec<String> = Vec::new();
+        for object in &model.objects {
+            let id =
+                if model.objects.len() == 1 { prefix.clone() } else { part_identifier(&prefix, &object.name, &ids) };
+            ids.push(id);
+        }
         let objects = model.objects.iter().enumerate().map(|(i, object)| ObjectValues {
-            id: match &model.objects[..] {
-                [_] => prefix.clone(),
-                _ => format!("{prefix}_{}", identifier(&object.name)),
-            },
+            id: ids[i].clone(),
             height: number(object.height(), object.digits),
             foot: vector(to_pov(object.instances[0].at), object.digits),
             places: object.instances[1..].iter().map(|place| placed(place, object.digits)).collect(),

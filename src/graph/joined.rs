@@ -141,7 +141,8 @@ impl<'a> Neighbourhood<'a> {
         let p = self.nodes[i as usize];
         let at = self.cell(p);
         let mut best = [(f64::INFINITY, u32::MAX); Sectors::MOST];
-        self.around(at, RINGS, |j| {
+        let rings = if self.levels.is_empty() { 2 * RINGS } else { RINGS };
+        self.around(at, rings, |j| {
             let d = self.nodes[j as usize] - p;
             let found = (d.length_squared(), j);
             let best = &mut best[sectors.of(d)];

@@ -85,7 +85,13 @@ pub(super) fn poisson(
     let mut nodes: Vec<DVec3> = Vec::new();
     for &p in fixed {
         let Some(at) = cells.of(p) else { continue };
-        if nodes.iter().all(|q| q.distance(p) >= spacing) {
+        let range = |axis: usize| (at[axis] - HALO).max(0)..(at[axis] + HALO + 1).min(cells.size[axis]);
+        let mut near = range(2).flat_map(|z| range(1).flat_map(move |y| range(0).map(move |x| [x, y, z])));
+        let is_free = near.all(|cell| match held[cells.index(cell)] {
+            0 => true,
+            node => nodes[node as usize - 1].distance(p) >= spacing,
+        });
+        if is_free {
             nodes.push(p);
             held[cells.index(at)] = nodes.len() as u32;
         }

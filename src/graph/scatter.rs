@@ -97,7 +97,7 @@ pub enum ScatterError {
 /// About how many nodes `spacing` apart the box with these corners holds.
 #[must_use]
 pub fn scatter_estimate(bounds: [DVec3; 2], spacing: f64, is_plane: bool) -> f64 {
-    let extent = (bounds[1] - bounds[0]) / spacing + 1.0;
+    let extent = ((bounds[1] - bounds[0]) / spacing).max(DVec3::splat(-1.0)) + 1.0;
     if is_plane { extent.x * extent.y * DENSITY[1] } else { extent.x * extent.y * extent.z * DENSITY[0] }
 }
 
@@ -333,7 +333,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(40))]
+        #![proptest_config(ProptestConfig::with_cases(200))]
 
         /// Edges are those that brute force finds, whatever the shape: clumps far apart, owners, ties.
         #[test]

@@ -236,8 +236,11 @@ impl<'a> Rounds<'a> {
             let dealt = influence.deal(&places, canopy, stream.nth(i));
             shares.iter_mut().zip(dealt).for_each(|(share, dealt)| *share = share.with(dealt));
         }
-        let counted: f64 =
-            ends.iter().zip(&shares).map(|(end, share)| f64::from(self.counts(end, share).iter().sum::<u32>())).sum();
+        let counted: f64 = ends
+            .iter()
+            .zip(&shares)
+            .map(|(end, share)| self.counts(end, share).iter().map(|&count| f64::from(count)).sum::<f64>())
+            .sum();
         let most = f64::min(MOST_ENDS, max_memory as f64 / END_BYTES);
         if self.grown.skeleton.paths.len() as f64 + counted > most {
             let message = format!(
@@ -261,6 +264,13 @@ impl<'a> Rounds<'a> {
             .into_iter()
             .flatten()
             .collect();
+        if counted > 0.0 && sprouts.iter().all(|sprout| sprout.ends.is_empty()) {
+            let message = format!(
+                "round {} could place none of its {counted} endpoints: make `inside` or `shell` larger, `apart` or the spacing smaller",
+                self.round + 1
+            );
+            return Err(GrowError::Scene { place: format!("grow.{}.to", self.step.name), message });
+        }
         progress.report("grow", f64::from(self.round + 1) / f64::from(self.repeat.times))?;
         let level = self.level + self.round as u16;
         for ((end, share), sprout) in ends.iter().zip(&shares).zip(sprouts) {
@@ -289,6 +299,10 @@ impl<'a> Rounds<'a> {
         GrowError::Scene { place: format!("space.{}.nodes", self.step.space_name), message }
     }
 
+    fn up(&self) -> DVec3 {
+        if self.space.is_plane { DVec3::Y } else { DVec3::Z }
+    }
+
     /// The number by which an end counts its rounds.
     fn index(&self, end: &End) -> u32 {
         match self.repeat.by {
@@ -314,12 +328,12 @@ impl<'a> Rounds<'a> {
         let index = self.index(end);
         let mut way = match self.repeat.orient {
             Orient::Outward => end.way,
-            Orient::Up => DVec3::Z,
-            Orient::Down => DVec3::NEG_Z,
+            Orient::Up => self.up(),
+            Orient::Down => -self.up(),
             Orient::Along(along) => along.0.normalize_or(DVec3::Z),
             Orient::Random => {
                 let mut random = Stream::new(self.seed, &format!("ways/{}", self.step.name)).nth(end.name);
-                let z: f64 = random.random_range(-1.0..1.0);
+                let z: f64 = if self.space.is_plane { 0.0 } else { random.random_range(-1.0..1.0) };
                 let turn = std::f64::consts::TAU * random.random::<f64>();
                 let across = libm::sqrt(1.0 - z * z);
                 DVec3::new(across * libm::cos(turn), across * libm::sin(turn), z)
@@ -355,7 +369,7 @@ impl<'a> Rounds<'a> {
     fn sprout(&self, end: &End, share: &Share, stream: &Stream, show: &[MarkKind]) -> Result<Sprout, GrowError> {
         let counts = self.counts(end, share);
         let mut sprout = Sprout::default();
-        if counts.iter().sum::<u32>() == 0 {
+        if counts.iter().all(|&count| count == 0) {
             return Ok(sprout);
         }
         let own = stream.nth(end.name);

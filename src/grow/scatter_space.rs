@@ -103,10 +103,26 @@ impl ScatterSpace {
         scatter_estimate([bounds.min, bounds.max], self.spacing, self.is_plane)
     }
 
+    /// About how many edges it has, each counted twice, where nodes are joined within a radius.
+    #[must_use]
+    pub fn edges_estimate(&self) -> f64 {
+        let nodes = self.estimate();
+        match self.joining {
+            Joining::Yao(_) => 12.0 * nodes,
+            Joining::Radius(reach) => {
+                let wide = reach / self.spacing;
+                let near = if self.is_plane { 2.6 * wide * wide } else { 3.2 * wide * wide * wide };
+                nodes * near.min(nodes)
+            }
+        }
+    }
+
     /// Bytes that planning in it takes at its peak.
     #[must_use]
     pub fn bytes_needed(&self) -> u64 {
-        scatter_bytes(self.estimate())
+        // Those of a Yao graph are counted with the nodes.
+        let more = (self.edges_estimate() - 12.0 * self.estimate()).max(0.0) * 16.0;
+        scatter_bytes(self.estimate()).saturating_add(more as u64)
     }
 
     /// The table of its weights.

@@ -45,7 +45,20 @@ impl Step {
     ) -> Result<Grown, GrowError> {
         let in_space =
             |message: String| GrowError::Scene { place: format!("space.{}.nodes", self.space_name), message };
-        let starts = self.start_places(grown)?;
+        let is_open = |p: DVec3| {
+            let volumes = space.clusters.as_ref().map_or(f64::INFINITY, |c| c.inside.margin(p) - c.radius);
+            let margin = space.shape.margin(p).min(volumes);
+            margin <= space.spacing && space.forbid.as_ref().is_none_or(|forbid| !forbid.contains(p))
+        };
+        let mut starts = self.start_places(grown)?;
+        if matches!(self.source, Source::Steps(..)) {
+            // As on a lattice: only what lies in the space.
+            starts.retain(|&p| is_open(p));
+            if starts.is_empty() {
+                let message = "nothing of that step lies in the space".to_owned();
+                return Err(GrowError::Scene { place: format!("grow.{}.from", self.name), message });
+            }
+        }
         let mut fixed = starts.clone();
         for set in &self.endpoints {
             match &set.placement {
@@ -54,14 +67,10 @@ impl Step {
                 Placement::Random { .. } | Placement::Near(_) => {}
             }
         }
-        for (p, key) in fixed.iter().zip(0..).map(|(p, i)| (p, if i < starts.len() { "from" } else { "to" })) {
-            let is_open = space.shape.margin(*p) <= space.spacing || space.clusters.is_some();
-            if matches!(self.source, Source::At(_))
-                && !(is_open && space.forbid.as_ref().is_none_or(|f| !f.contains(*p)))
-            {
-                let message = format!("the point {p} is outside the space or where nodes are forbidden");
-                return Err(GrowError::Scene { place: format!("grow.{}.{key}", self.name), message });
-            }
+        if let Some(i) = fixed.iter().position(|&p| !is_open(p)) {
+            let message = format!("the point {} is outside the space or where nodes are forbidden", fixed[i]);
+            let key = if i < starts.len() { "from" } else { "to" };
+            return Err(GrowError::Scene { place: format!("grow.{}.{key}", self.name), message });
         }
         let table = space.table().map_err(|error| GrowError::Scene {
             place: format!("space.{}.weights", self.space_name),
@@ -177,7 +186,9 @@ impl Step {
                     paths.add(&found, node, *class, before);
                     before += weights.real(cost) * space.spacing;
                 } else {
+                    // What comes after it would hang in the air.
                     unreached(node, "through")?;
+                    break;
                 }
                 from = vec![(node, 0)];
             }
@@ -212,7 +223,7 @@ impl Step {
         Ok(Grown {
             name: self.name.clone(),
             foot: None,
-            first_level: 0,
+            first_level: self.first_level(grown),
             nodes: graph.len() as u64,
             edges: graph.count_edges(),
             settled,

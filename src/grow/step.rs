@@ -126,8 +126,8 @@ impl Step {
         let paths: u64 = self.endpoints.iter().map(|set| set.placement.count() as u64).sum();
         match &self.space {
             Space::Scatter(space) => {
-                // Each thread has a graph of a repeated step.
-                let graphs = if self.repeat.is_some() { rayon::current_num_threads() as u64 } else { 1 };
+                // A repeated step keeps sets of nodes, and makes some at a time.
+                let graphs = if self.repeat.is_some() { 20 } else { 1 };
                 space.bytes_needed().saturating_mul(graphs)
             }
             Space::Lattice(space) => {
@@ -248,7 +248,7 @@ impl Step {
         Ok(Grown {
             name: self.name.clone(),
             foot: None,
-            first_level: 0,
+            first_level: self.first_level(grown),
             nodes: lattice.open_nodes(),
             edges: lattice.count_edges(),
             settled,
@@ -389,6 +389,8 @@ impl Step {
     pub(super) fn finish(&self, mut skeleton: Skeleton, grown: &[Option<&Skeleton>]) -> Result<Skeleton, GrowError> {
         if self.repeat.is_none() {
             skeleton.root_paths();
+            let level = self.first_level(grown);
+            skeleton.nodes.iter_mut().for_each(|node| node.level = level);
         }
         self.width
             .apply(&mut skeleton)
@@ -402,7 +404,13 @@ impl Step {
         Ok(skeleton)
     }
 
-    /// Carries on ages, levels and largest radii from the steps that this one grows from.
+    /// The level of its first round: one more than what it grows from, where it belongs to a plant.
+    pub(super) fn first_level(&self, grown: &[Option<&Skeleton>]) -> u16 {
+        let levels = self.sources().iter().filter_map(|&step| grown[step]).flat_map(|s| &s.nodes).map(|n| n.level + 1);
+        if self.width.starts_plant().is_some() { levels.max().unwrap_or(0) } else { 0 }
+    }
+
+    /// Carries on ages and largest radii from the steps that this one grows from.
     pub(super) fn age(&self, skeleton: &mut Skeleton, grown: &[Option<&Skeleton>]) {
         let known: HashMap<[u64; 3], &SkeletonNode> = self
             .sources()

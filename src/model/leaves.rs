@@ -5,7 +5,8 @@ use rand::RngExt;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Digits, Mesh, Pose};
+use super::skin::MOST_PRIMITIVES;
+use super::{Digits, Mesh, Pose, SkinError};
 use crate::grow::{Canopy, sky};
 use crate::math::{DMat3, DVec2, DVec3, Degrees, Ref, Stream, rotation, turned_toward};
 use crate::model::Material;
@@ -161,8 +162,21 @@ pub fn ball_mesh() -> Mesh {
 
 impl LeavesSpec {
     /// Where leaves stand on `skeletons`, which one object shows, from `foot`; `stream` is theirs alone.
-    #[must_use]
-    pub fn place(&self, skeletons: &[&Skeleton], foot: DVec3, digits: Digits, stream: &Stream) -> Vec<Pose> {
+    ///
+    /// # Errors
+    /// [`SkinError::TooMany`].
+    pub fn place(
+        &self,
+        skeletons: &[&Skeleton],
+        foot: DVec3,
+        digits: Digits,
+        stream: &Stream,
+    ) -> Result<Vec<Pose>, SkinError> {
+        let ends: usize = skeletons.iter().map(|s| s.paths.len()).sum();
+        let most = ends.saturating_mul(self.count as usize);
+        if most > MOST_PRIMITIVES {
+            return Err(SkinError::TooMany(most));
+        }
         let bits = |p: DVec3| p.to_array().map(f64::to_bits);
         // Ends from which another step grew are no ends.
         let roots: std::collections::HashSet<[u64; 3]> =
@@ -198,7 +212,7 @@ impl LeavesSpec {
                 }
             }
         }
-        poses
+        Ok(poses)
     }
 
     /// A leaf at `at` on a limb that goes along `way`.

@@ -15,7 +15,7 @@ const SPHERE_GAP: f64 = 0.5;
 /// Most spheres to a segment: a twig thinner than this allows is far below a pixel.
 const MOST_SPHERES: u32 = 256;
 /// More primitives than this in an object are refused: POV-Ray takes about a kilobyte for each.
-const MOST_PRIMITIVES: usize = 20_000_000;
+pub(super) const MOST_PRIMITIVES: usize = 20_000_000;
 
 /// How a skeleton becomes solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -110,8 +110,14 @@ impl Object {
 
 impl Mesh {
     /// This mesh at each of `poses`, as one.
-    #[must_use]
-    pub fn at_poses(&self, poses: &[Pose]) -> Self {
+    ///
+    /// # Errors
+    /// [`SkinError::TooMany`].
+    pub fn at_poses(&self, poses: &[Pose]) -> Result<Self, SkinError> {
+        let count = poses.len().saturating_mul(self.triangles.len());
+        if count > MOST_PRIMITIVES {
+            return Err(SkinError::TooMany(count));
+        }
         let mut all = Self::default();
         for pose in poses {
             let first = all.points.len() as u32;
@@ -119,7 +125,7 @@ impl Mesh {
             all.normals.extend(self.normals.iter().map(|&n| (pose.axes * n).normalize_or(DVec3::Z)));
             all.triangles.extend(self.triangles.iter().map(|t| t.map(|i| first + i)));
         }
-        all
+        Ok(all)
     }
 }
 

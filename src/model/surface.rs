@@ -9,7 +9,7 @@ use super::Mesh;
 use crate::math::DVec3;
 use crate::skeleton::Skeleton;
 
-/// Sides of the thickest limb's rings; the others have 4, 6 or 8.
+/// Sides of the rings of a limb that leaves no other; one that is sewn has as many as its patch has corners, others 8.
 const SIDES: usize = 12;
 /// Limbs thinner than this share of the one they leave start within it: the patch would be far wider than they are.
 const THIN: f64 = 0.2;
@@ -74,7 +74,8 @@ fn limbs(skeletons: &[&Skeleton], foot: DVec3) -> Vec<Limb> {
                 Some(&limb) => limb,
                 None => {
                     let parent = node.parent.map(|p| &skeleton.nodes[p as usize]);
-                    let start = parent.map_or(here, |p| (p.position - foot, node.radius.min(p.radius)));
+                    // As thin as it is itself, but not without width.
+                    let start = parent.map_or(here, |p| (p.position - foot, node.radius.max(p.radius * 0.2)));
                     let found = places.get(&bits(start.0)).copied();
                     // What starts at another's tip goes on from it.
                     let goes_on =
@@ -105,6 +106,8 @@ struct Builder {
     mesh: Mesh,
     /// The way of each limb that is sewn to another, where it leaves that.
     ways: HashMap<usize, DVec3>,
+    /// How many columns of the other's wall each of them takes.
+    columns: HashMap<usize, usize>,
     /// The rim of the patch that waits for each limb, counterclockwise seen from outside.
     rims: HashMap<usize, Vec<u32>>,
     /// The patches of each limb.
@@ -132,7 +135,10 @@ impl Builder {
             if sin < 0.35 {
                 continue;
             }
-            let sides = sides(stem);
+            let sides = self.columns.get(&parent).map_or_else(|| sides(stem), |columns| 2 * columns + 2);
+            if sides <= WALL {
+                continue;
+            }
             let half = libm::asin((thin / thick).min(1.0)) / std::f64::consts::TAU * sides as f64;
             let columns = (libm::round(2.0 * half) as usize).clamp(1, sides - WALL);
             let lengths = lengths(stem);
@@ -145,6 +151,7 @@ impl Builder {
             if low > 0.0 && high < lengths[lengths.len() - 1] * 0.98 && is_free {
                 own.push(Patch { low, high, limb: i, columns });
                 self.ways.insert(i, way);
+                self.columns.insert(i, columns);
             }
         }
         self.patches.values_mut().for_each(|patches| patches.sort_by(|a, b| a.low.total_cmp(&b.low)));
@@ -181,7 +188,7 @@ impl Builder {
             let x = carried.unwrap_or_else(|| self.first_side(rim.as_deref(), centre, along));
             side = Some(x);
             let y = along.cross(x);
-            v += (s - last) / (std::f64::consts::TAU * radius);
+            v += (s - last) / (std::f64::consts::TAU * radius.max(whole * 1e-6));
             last = s;
             let first = self.mesh.points.len() as u32;
             for k in 0..count {

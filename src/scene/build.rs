@@ -113,9 +113,15 @@ fn shape_plants(steps: &[Step], grown: &mut [Grown]) {
         }
     };
     let mut plants: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    // In the order of growth: a step's plant is there before it.
+    // In the order of growth: what a step grows from comes before it.
+    let mut depth = vec![0; steps.len()];
+    for _ in 0..steps.len() {
+        for i in 0..steps.len() {
+            depth[i] = steps[i].sources().iter().map(|&from| depth[from] + 1).max().unwrap_or(0);
+        }
+    }
     let mut order: Vec<usize> = (0..steps.len()).collect();
-    order.sort_by_key(|&i| (grown[i].first_level, i));
+    order.sort_by_key(|&i| (depth[i], i));
     for i in order {
         if let Some(base) = base(i) {
             plants.entry(base).or_default().push(i);
@@ -200,13 +206,13 @@ pub fn model(scene: &Resolved, grown: &[Grown], size: [u32; 2]) -> Result<Model,
         for (name, spec, mesh, material) in &plan.leaves {
             let stream = Stream::new(scene.seed, &format!("leaves/{}/{name}", plan.name));
             let grown_foot = foot(&skeletons).unwrap_or(DVec3::ZERO);
-            let poses = spec.place(&skeletons, grown_foot, digits, &stream);
+            let poses = spec.place(&skeletons, grown_foot, digits, &stream).map_err(wrong)?;
             let name = format!("{}_{name}", plan.name);
             if poses.is_empty() {
                 continue;
             }
             parts.push(if plan.skin == Skin::Mesh {
-                Object::of_mesh(&name, &mesh.at_poses(&poses), first, *material).map_err(wrong)?
+                Object::of_mesh(&name, &mesh.at_poses(&poses).map_err(wrong)?, first, *material).map_err(wrong)?
             } else {
                 Object::of_poses(&name, mesh, poses, first, digits, *material).map_err(wrong)?
             });

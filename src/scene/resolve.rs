@@ -157,7 +157,7 @@ pub(super) fn resolve(
     }
     let materials = r.materials(is_flat);
     let objects: Vec<Option<ObjectPlan>> =
-        scene.object.iter().map(|(name, spec)| r.object(name, spec, &materials)).collect();
+        scene.object.iter().map(|(name, spec)| r.object(name, spec, &materials, is_flat)).collect();
     let lights = r.lights(is_flat);
     for (name, claim) in &scene.claim {
         for (key, step) in
@@ -293,7 +293,13 @@ impl Resolver<'_> {
         materials.into_iter().collect()
     }
 
-    fn object(&mut self, name: &str, spec: &ObjectSpec, materials: &[(String, Material)]) -> Option<ObjectPlan> {
+    fn object(
+        &mut self,
+        name: &str,
+        spec: &ObjectSpec,
+        materials: &[(String, Material)],
+        is_flat: bool,
+    ) -> Option<ObjectPlan> {
         let place = format!("object.{name}");
         let steps: Vec<_> = spec
             .grow
@@ -321,6 +327,14 @@ impl Resolver<'_> {
             Some(material) => self.find(&format!("{place}.material"), "material", material, names.clone())?,
             None => names.clone().position(|n| n == "ink").or_else(|| names.clone().position(|n| n == "bark"))?,
         };
+        if is_flat && (spec.skin == Skin::Mesh || !spec.leaves.is_empty()) {
+            let message = "leaves and the skin `mesh` are for scenes in space".to_owned();
+            self.wrong(&place, message);
+        }
+        if spec.skin == Skin::Mesh && !spec.level_materials.is_empty() {
+            let message = "the skin `mesh` makes all levels one: it has one material".to_owned();
+            self.wrong(&format!("{place}.level_materials"), message);
+        }
         let level_materials: Vec<_> = (0..)
             .zip(&spec.level_materials)
             .map(|(i, material): (usize, _)| {

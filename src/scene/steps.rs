@@ -16,6 +16,8 @@ use crate::math::{DVec2, DVec3, PerRound, Point};
 
 /// The dielectric breakdown model solves for all nodes again and again: more would take days.
 const MOST_DBM: u64 = 4 << 20;
+/// More edges than this are refused.
+const MOST_EDGES: f64 = 2e9;
 /// More scattered nodes than this are refused.
 const MOST_SCATTERED: f64 = 1e8;
 
@@ -82,6 +84,20 @@ impl Resolver<'_> {
                         "about {estimate:.1e} nodes are too many ({MOST_SCATTERED:.0e} at most): use a wider spacing or a smaller shape"
                     );
                     self.wrong(&format!("{place}.nodes.scatter.spacing"), message);
+                    return None;
+                }
+                let edges = space.edges_estimate();
+                if edges > MOST_EDGES {
+                    let message = format!(
+                        "about {edges:.1e} edges are too many ({MOST_EDGES:.0e} at most): use a smaller radius"
+                    );
+                    self.wrong(&format!("{place}.nodes.scatter.radius"), message);
+                    return None;
+                }
+                let size = space.shape.bounds().size();
+                if !plane && size.min_element() <= 0.0 && !space.shape.bounds().is_empty() {
+                    let message = "a shape in space needs a thickness; for a flat scene set `plane = true`".to_owned();
+                    self.wrong(&format!("{place}.shape"), message);
                     return None;
                 }
                 Some(Space::Scatter(space))
@@ -259,7 +275,7 @@ impl Resolver<'_> {
             None => None,
         };
         self.plant_width(&place, spec);
-        let rounds = repeat.as_ref().map(|repeat| repeat.times);
+        let rounds = spec.repeat.as_ref().map(super::repeat::indices);
         let sets: Vec<_> = spec
             .to
             .iter()

@@ -43,6 +43,10 @@ impl Default for FormSpec {
 /// How natural limbs are.
 pub type Form = FormSpec;
 
+/// Limbs are averaged over this many of their radii.
+const THICK: f64 = 1.3;
+/// But over no more nodes than this to either side.
+const MOST_SPREAD: f64 = 5.0;
 /// A collar reaches this many radii of the limb out of the one that it leaves.
 const COLLAR_REACH: f64 = 3.0;
 /// A flare reaches this many radii of the root up.
@@ -123,20 +127,33 @@ impl Plant {
         next
     }
 
-    /// Averages positions along limbs; a limb that leaves another stays with it. The kernel is `[1 2 1] / 4`.
+    /// Averages positions along limbs, over about so many `nodes` to either side, and where limbs are thicker than that over
+    /// as many as their thickness takes: a limb does not wind within its own thickness. A limb that leaves another stays
+    /// with it. The kernel is `[1 2 1] / 4`, whose variance is half a step.
     fn smooth(&mut self, nodes: f64) {
+        if nodes <= 0.0 {
+            return;
+        }
         let starts: Vec<bool> = (0..self.nodes.len()).map(|i| self.is_start(i)).collect();
         let next = self.next_along();
-        for _ in 0..libm::round(2.0 * nodes * nodes) as u32 {
-            let before: Vec<DVec3> = self.nodes.iter().map(|n| n.node.position).collect();
+        let passes: Vec<u32> = (0..self.nodes.len())
+            .map(|i| {
+                let thick = self.nodes[i].node.radius * THICK / self.step(i).max(f64::MIN_POSITIVE);
+                let spread = nodes.max(thick.min(MOST_SPREAD));
+                libm::round(2.0 * spread * spread) as u32
+            })
+            .collect();
+        let mut before: Vec<DVec3> = self.nodes.iter().map(|n| n.node.position).collect();
+        for pass in 0..passes.iter().copied().max().unwrap_or(0) {
             for i in 0..self.nodes.len() {
                 let Some(p) = self.nodes[i].node.parent else { continue };
                 if starts[i] {
                     self.nodes[i].node.position = self.nodes[p as usize].node.position;
-                } else if let Some(n) = next[i] {
+                } else if let Some(n) = next[i].filter(|_| pass < passes[i]) {
                     self.nodes[i].node.position = (before[p as usize] + before[i] * 2.0 + before[n as usize]) * 0.25;
                 }
             }
+            before.iter_mut().zip(&self.nodes).for_each(|(to, node)| *to = node.node.position);
         }
     }
 
@@ -145,6 +162,8 @@ impl Plant {
         // For each node: how far along its limb, the radius where that starts, and that of the limb it leaves.
         let mut along: Vec<(f64, f64, f64)> = Vec::with_capacity(self.nodes.len());
         let fall = |x: f64| if x < 1.0 { (1.0 - x) * (1.0 - x) } else { 0.0 };
+        // Level at first: the ball at the foot must not stand out.
+        let bell = |x: f64| fall(x * x);
         for i in 0..self.nodes.len() {
             let node = self.nodes[i].node;
             let here = match node.parent {
@@ -174,7 +193,7 @@ impl Plant {
         for i in 0..self.nodes.len() {
             let (length, start, other) = along[i];
             let extra = if roots[i] {
-                start * (form.flare - 1.0) * fall(length / (FLARE_REACH * start).max(f64::MIN_POSITIVE))
+                start * (form.flare - 1.0) * bell(length / (FLARE_REACH * start).max(f64::MIN_POSITIVE))
             } else {
                 start * form.collar * fall(length / (other + COLLAR_REACH * start).max(f64::MIN_POSITIVE))
             };
@@ -272,7 +291,7 @@ impl Plant {
                             position: hermite([before, a, b, after], t),
                             parent: Some(parent),
                             cost: mix(from.cost, own.node.cost),
-                            radius: mix(from.radius, own.node.radius),
+                            radius: mix(from.radius, own.node.radius).clamp(own.node.radius, from.radius),
                             ..own.node
                         };
                         parent = nodes.len() as u32;

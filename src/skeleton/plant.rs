@@ -162,7 +162,7 @@ impl Plant {
         let root = spec.root.unwrap_or(1.0);
         for ((node, area), way) in self.nodes.iter_mut().zip(area).zip(all) {
             node.reach = way.unwrap_or(0.0);
-            node.node.radius = f64::max(root * power(area / whole, 1.0 / spec.power), tip);
+            node.node.radius = f64::max(root * power(area / whole, 1.0 / spec.power.unwrap_or(2.0)), tip);
         }
     }
 
@@ -332,7 +332,7 @@ mod tests {
     #[test]
     fn a_pipe_keeps_its_area() {
         let (trunk, limbs) = parts();
-        let width = Width::Pipe(Pipe { root: Some(0.4), tip: None, power: 2.0 });
+        let width = Width::Pipe(Pipe { root: Some(0.4), tip: None, power: None });
         let given = [
             Part { skeleton: &trunk, width: &width, first_level: 0 },
             Part { skeleton: &limbs, width: &width, first_level: 1 },

@@ -114,14 +114,10 @@ pub struct Pipe {
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e6))]
     pub tip: Option<f64>,
-    /// 2 keeps the area; trees have 1.8 to 2.7.
-    #[serde(default = "square")]
+    /// 2, unless it is given where the plant starts, keeps the area; trees have 1.8 to 2.7.
+    #[serde(default)]
     #[schemars(range(min = 1.0, max = 5.0))]
-    pub power: f64,
-}
-
-fn square() -> f64 {
-    2.0
+    pub power: Option<f64>,
 }
 
 /// `T = from (1 - (d/d_max)^beta) + to (d/d_max)^beta`, with d the cost of a node and `d_max` that of the path's own
