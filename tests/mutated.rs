@@ -43,8 +43,6 @@ const NUMBERS: &[&str] = &["0", "1", "7", "40", "1000", "0.001", "1e-9", "1e6", 
 fn small(text: &str) -> String {
     text.replace("spacing = 0.16", "spacing = 1.28")
         .replace("nodes.scatter = { spacing = 0.", "nodes.scatter = { spacing = 0.9")
-        .replace("copies = [", "# copies = [")
-        .replace("    { at = ", "    # { at = ")
         .replace("spacing = 0.0", "spacing = 0.1")
         .replace("count = 1100", "count = 30")
         .replace("count = 1400", "count = 30")
