@@ -22,5 +22,5 @@ pub use picture::{
 };
 pub use plate::{ACESCG, REC709, decode_plate, resize_grey, resize_plate, set_chromaticities};
 pub use seal::{is_edited, seal};
-pub use sketch::{Page, decode_sketch, draw_svg};
+pub use sketch::{Page, decode_sketch, draw_svg, letter_outlines};
 pub use whole::{write_bytes, write_whole};

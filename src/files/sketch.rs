@@ -66,18 +66,22 @@ fn visit(group: &Group, tree: &Tree, page: &mut Page, points: &mut usize) -> Res
     Ok(())
 }
 
-/// Adds the subpaths of `path` to the page, curves cut into pieces.
+/// Adds the subpaths of `path` to the page.
 fn flatten(path: &tiny_skia::Path, transform: Transform, tree: &Tree, page: &mut Page) {
     let size = tree.size();
-    let place = |mut p: Point| {
+    subpaths(path, &mut page.lines, &|mut p: Point| {
         transform.map_point(&mut p);
         DVec2::new(f64::from(p.x) / f64::from(size.width()), 1.0 - f64::from(p.y) / f64::from(size.height()))
-    };
+    });
+}
+
+/// Adds the subpaths of `path`, each point where `place` puts it, curves cut into pieces.
+fn subpaths(path: &tiny_skia::Path, lines: &mut Vec<(Vec<DVec2>, bool)>, place: &dyn Fn(Point) -> DVec2) {
     let mut line: Vec<DVec2> = Vec::new();
     let mut last = Point::zero();
     let mut end = |line: &mut Vec<DVec2>, is_closed: bool| {
         if !line.is_empty() {
-            page.lines.push((std::mem::take(line), is_closed));
+            lines.push((std::mem::take(line), is_closed));
         }
     };
     for segment in path.segments() {
@@ -117,6 +121,64 @@ fn flatten(path: &tiny_skia::Path, transform: Transform, tree: &Tree, page: &mut
         }
     }
     end(&mut line, false);
+}
+
+/// Size of the em that letters are set in, before they are scaled.
+const EM: f64 = 1000.0;
+
+/// The outlines of `text` in the font of the file `bytes` (TrueType or OpenType), a line for each of its own: with an em of 1, the first
+/// baseline at 0, x to the right and y up. Letters are kerned and joined as the font says.
+///
+/// # Errors
+/// A sentence: no font, or nothing to see in the text.
+pub fn letter_outlines(text: &str, bytes: &[u8]) -> Result<Vec<Vec<DVec2>>, String> {
+    let mut options = usvg::Options::default();
+    options.fontdb_mut().load_font_data(bytes.to_vec());
+    let family = options.fontdb.faces().find_map(|face| face.families.first().map(|(name, _)| name.clone()));
+    let face = options.fontdb.faces().next().map(|face| (face.weight.0, face.style));
+    let (Some(family), Some((weight, style))) = (family, face) else {
+        return Err("it is not a TrueType or OpenType font".to_owned());
+    };
+    let style = match style {
+        usvg::fontdb::Style::Normal => "normal",
+        usvg::fontdb::Style::Italic => "italic",
+        usvg::fontdb::Style::Oblique => "oblique",
+    };
+    let escaped = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
+    let rows: String = (0..)
+        .zip(text.lines())
+        .map(|(i, row): (u32, _)| {
+            format!(r#"<text xml:space="preserve" x="0" y="{}">{}</text>"#, f64::from(i) * EM * LEADING, escaped(row))
+        })
+        .collect();
+    let svg = format!(
+        r#"<svg xmlns="http://www.w3.org/2000/svg" width="1000" height="1000" font-family="{}" font-weight="{weight}" font-style="{style}" font-size="{EM}">{rows}</svg>"#,
+        escaped(&family)
+    );
+    let tree = Tree::from_str(&svg, &options).map_err(|e| format!("its letters cannot be set: {e}"))?;
+    let mut lines = Vec::new();
+    letters(tree.root(), &mut lines);
+    if lines.is_empty() {
+        return Err(format!("it has no outlines for {text:?}"));
+    }
+    Ok(lines.into_iter().map(|(line, _)| line).collect())
+}
+
+/// Distance of baselines over the em.
+const LEADING: f64 = 1.2;
+
+fn letters(group: &Group, lines: &mut Vec<(Vec<DVec2>, bool)>) {
+    for node in group.children() {
+        match node {
+            Node::Group(group) => letters(group, lines),
+            Node::Path(path) => subpaths(path.data(), lines, &|mut p: Point| {
+                path.abs_transform().map_point(&mut p);
+                DVec2::new(f64::from(p.x), -f64::from(p.y)) / EM
+            }),
+            Node::Text(text) => letters(text.flattened(), lines),
+            Node::Image(_) => {}
+        }
+    }
 }
 
 /// Draws an SVG at its own size. `fonts` are font files that its texts may use.

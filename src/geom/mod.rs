@@ -4,16 +4,22 @@
 
 mod bounds;
 mod closed_mesh;
+mod cubes;
+mod outline;
 mod profile;
 mod round_cone;
 mod shape;
 mod shape_spec;
 mod strokes;
+mod voxels;
 
 pub use bounds::Bounds;
 pub use closed_mesh::ClosedMesh;
+pub use cubes::Surface;
+pub use outline::{Outline, simplified};
 pub use profile::Profile;
 pub use round_cone::{Frustum, frustum};
 pub use shape::{Shape, Solid};
-pub use shape_spec::{MeshParts, ShapeFiles, ShapeSpec, SketchLines, SolidSpec};
+pub use shape_spec::{MeshParts, Rings, ShapeFiles, ShapeSpec, SketchLines, SolidSpec};
 pub use strokes::Strokes;
+pub use voxels::Voxels;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Bounds, ClosedMesh, Profile};
+use super::{Bounds, ClosedMesh, Outline, Profile, Voxels};
 use crate::math::{DMat3, DVec2, DVec3};
 
 /// A solid, or several combined, whose names and files are resolved.
@@ -71,6 +71,26 @@ pub enum Solid {
     },
     /// The inside of a mesh.
     Mesh(Arc<ClosedMesh>),
+    /// What outlines enclose: in the plane, or upright in space as far as half of `depth` to the front and to the back.
+    Outlined {
+        /// The outlines.
+        outline: Arc<Outline>,
+        /// Extent along y; in the plane none.
+        depth: Option<f64>,
+    },
+    /// All that is no farther from the surface of a shape than this.
+    Shell {
+        /// The shape.
+        of: Shape,
+        /// How far it reaches outside.
+        outside: f64,
+        /// How far it reaches inside.
+        inside: f64,
+    },
+    /// What the step with this index will have grown, within these bounds: until then nothing ([`Shape::with_grown`]).
+    Grown(usize, Bounds),
+    /// A solid that grew.
+    Voxels(Arc<Voxels>),
     /// A shape that is scaled, then turned, then moved.
     Placed {
         /// The shape.
@@ -151,6 +171,10 @@ impl Shape {
     /// A number with the sign of [`Shape::distance`] that is nowhere larger than the true distance from the surface.
     #[must_use]
     pub fn margin(&self, p: DVec3) -> f64 {
+        if self.is_sampled() {
+            // Distances that are not exact, of grids and of shells, are off by less than that.
+            return self.distance(p) * 0.5;
+        }
         // |p / radii| changes by no more than 1 / (the least radius) a unit.
         self.signed(p, &|centre, radii, p| (((p - centre) / radii).length() - 1.0) * radii.min_element())
     }
@@ -187,6 +211,18 @@ impl Shape {
             }
             Solid::Revolved { from, along, profile } => profile.distance(beside(p - *from, *along)),
             Solid::Mesh(mesh) => mesh.distance(p),
+            Solid::Outlined { outline, depth: None } => outline.distance(p.truncate()),
+            Solid::Outlined { outline, depth: Some(depth) } => {
+                let (across, along) = (outline.distance(DVec2::new(p.x, p.z)), p.y.abs() - depth * 0.5);
+                let corner = DVec2::new(across, along).max(DVec2::ZERO).length();
+                corner + across.max(along).min(0.0)
+            }
+            Solid::Shell { of, outside, inside } => {
+                let d = of.distance(p);
+                (d - outside).max(-d - inside)
+            }
+            Solid::Grown(..) => f64::INFINITY,
+            Solid::Voxels(voxels) => voxels.distance(p),
             Solid::Placed { shape, scale, turn, by } => {
                 shape.signed(turn.transpose() * (p - *by) / *scale, ellipsoid) * scale
             }
@@ -196,6 +232,35 @@ impl Shape {
                 let less = of[1..].iter().map(|s| -s.signed(p, ellipsoid));
                 less.fold(of[0].signed(p, ellipsoid), f64::max)
             }
+        }
+    }
+
+    /// This shape with every [`Solid::Grown`] in it replaced by what `grown` has for it.
+    #[must_use]
+    pub fn with_grown(&self, grown: &dyn Fn(usize) -> Option<Arc<Voxels>>) -> Self {
+        let all = |of: &[Self]| of.iter().map(|shape| shape.with_grown(grown)).collect();
+        match &*self.0 {
+            Solid::Grown(step, _) => grown(*step).map_or_else(|| self.clone(), |v| Self::new(Solid::Voxels(v))),
+            Solid::Shell { of, outside, inside } => {
+                Self::new(Solid::Shell { of: of.with_grown(grown), outside: *outside, inside: *inside })
+            }
+            Solid::Placed { shape, scale, turn, by } => {
+                Self::new(Solid::Placed { shape: shape.with_grown(grown), scale: *scale, turn: *turn, by: *by })
+            }
+            Solid::Union(of) => Self::new(Solid::Union(all(of))),
+            Solid::Intersection(of) => Self::new(Solid::Intersection(all(of))),
+            Solid::Difference(of) => Self::new(Solid::Difference(all(of))),
+            _ => self.clone(),
+        }
+    }
+
+    /// Is anything in it of which distances are approximate on both sides of its surface?
+    fn is_sampled(&self) -> bool {
+        match &*self.0 {
+            Solid::Voxels(_) | Solid::Shell { .. } => true,
+            Solid::Placed { shape, .. } => shape.is_sampled(),
+            Solid::Union(of) | Solid::Intersection(of) | Solid::Difference(of) => of.iter().any(Self::is_sampled),
+            _ => false,
         }
     }
 
@@ -230,6 +295,18 @@ impl Shape {
                 end(low).union(end(high))
             }
             Solid::Mesh(mesh) => mesh.bounds(),
+            Solid::Outlined { outline, depth: None } => outline.bounds(),
+            Solid::Outlined { outline, depth: Some(depth) } => {
+                let upright = |p: DVec3, y: f64| DVec3::new(p.x, y, p.y);
+                let bounds = outline.bounds();
+                Bounds { min: upright(bounds.min, -depth * 0.5), max: upright(bounds.max, depth * 0.5) }
+            }
+            Solid::Shell { of, outside, .. } => {
+                let bounds = of.bounds();
+                Bounds { min: bounds.min - *outside, max: bounds.max + *outside }
+            }
+            Solid::Grown(_, bounds) => *bounds,
+            Solid::Voxels(voxels) => voxels.bounds(),
             Solid::Placed { shape, scale, turn, by } => {
                 let corners = shape.bounds().corners().map(|p| *turn * (p * *scale) + *by);
                 corners.into_iter().fold(Bounds::EMPTY, |all, p| all.union(Bounds { min: p, max: p }))
@@ -288,12 +365,20 @@ mod tests {
 
     use proptest::prelude::*;
 
-    use super::super::shape_spec::{MeshParts, ShapeFiles, ShapeSpec, SketchLines};
+    use super::super::shape_spec::{MeshParts, Rings, ShapeFiles, ShapeSpec, SketchLines};
     use super::*;
 
     struct NoFiles;
 
     impl ShapeFiles for NoFiles {
+        fn letters(&self, _: &str, _: Option<&str>) -> Result<Rings, String> {
+            Err("no files here".to_owned())
+        }
+
+        fn picture_outlines(&self, _: &str, _: f64, _: bool) -> Result<Rings, String> {
+            Err("no files here".to_owned())
+        }
+
         fn sketch_lines(&self, _: &str) -> Result<SketchLines, String> {
             Err("no files here".to_owned())
         }

@@ -9,8 +9,8 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 
 use super::shape::Solid;
-use super::{Bounds, ClosedMesh, Profile, Shape};
-use crate::math::{DVec2, DVec3, Degrees, Point, Ref, rotation, unknown};
+use super::{Bounds, ClosedMesh, Outline, Profile, Shape};
+use crate::math::{DMat3, DVec2, DVec3, Degrees, Point, Ref, rotation, unknown};
 
 /// A solid as a scene writes it, or several combined.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
@@ -100,6 +100,62 @@ pub enum SolidSpec {
         /// A Wavefront OBJ (y up, as usual there) or PLY file (z up), beside the scene.
         file: String,
     },
+    /// Letters (Xu and Mould 2007, Fig. 13): in the plane, or with a `depth` upright in space, seen from the front.
+    Letters {
+        /// What they spell; a new line starts a new line.
+        #[schemars(length(min = 1, max = 1000))]
+        text: String,
+        /// A font file (TrueType, OpenType) beside the scene; by default DejaVu Sans Bold.
+        #[serde(default)]
+        font: Option<String>,
+        /// The font's size (its em), in scene units: capitals are about 0.7 of it.
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+        size: f64,
+        /// Where the baseline starts; by default the origin.
+        #[serde(default)]
+        at: Option<Point>,
+        /// In space: how deep they are, along y.
+        #[serde(default)]
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+        depth: Option<f64>,
+    },
+    /// The dark parts of a picture: in the plane, or with a `depth` upright in space.
+    Picture {
+        /// A picture beside the scene: PNG or JPEG.
+        file: String,
+        /// Its height in scene units; the width follows.
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+        height: f64,
+        /// Where its lower left corner is; by default the origin.
+        #[serde(default)]
+        at: Option<Point>,
+        /// Brighter than this, from 0 (black) to 1 (white), is outside.
+        #[serde(default = "half")]
+        #[schemars(range(min = 0.0, max = 1.0))]
+        threshold: f64,
+        /// Take the bright parts instead.
+        #[serde(default)]
+        bright: bool,
+        /// In space: how deep it is, along y.
+        #[serde(default)]
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+        depth: Option<f64>,
+    },
+    /// All near the surface of a shape: a skin around a rock.
+    Shell {
+        /// The shape.
+        of: ShapeSpec,
+        /// How far it reaches outside of the surface.
+        #[serde(default)]
+        #[schemars(range(min = 0.0, max = 1e6))]
+        outside: f64,
+        /// How far it reaches inside.
+        #[serde(default)]
+        #[schemars(range(min = 0.0, max = 1e6))]
+        inside: f64,
+    },
+    /// What a step with `by.regions` grew: spaces and endpoints with it wait for that step.
+    Grown(String),
     /// Another shape: scaled about the origin, then turned about an axis through it, then moved.
     Placed {
         /// The shape.
@@ -128,6 +184,10 @@ pub enum SolidSpec {
 
 fn one() -> f64 {
     1.0
+}
+
+fn half() -> f64 {
+    0.5
 }
 
 /// A shape as a scene writes it: a solid, or the name of one under `[shape]`.
@@ -168,8 +228,31 @@ pub type SketchLines = Vec<Vec<DVec2>>;
 /// Corners, and triangles as three of them each.
 pub type MeshParts = (Vec<DVec3>, Vec<[u32; 3]>);
 
-/// Where the files that shapes name are read.
+/// Closed polylines: x to the right, y up.
+pub type Rings = Vec<Vec<DVec2>>;
+
+/// Where the files and steps that shapes name are found.
 pub trait ShapeFiles {
+    /// The outlines of `text` in the font `file`, or in that which comes with the program, with an em of 1.
+    ///
+    /// # Errors
+    /// A sentence with the name and the reason.
+    fn letters(&self, text: &str, file: Option<&str>) -> Result<Rings, String>;
+
+    /// The outlines of what is darker than `threshold` in the picture `file` (brighter, where `bright`), with a height of 1.
+    ///
+    /// # Errors
+    /// A sentence with the name and the reason.
+    fn picture_outlines(&self, file: &str, threshold: f64, bright: bool) -> Result<Rings, String>;
+
+    /// The index of the step of this name, which yields solids, and the shape of its space.
+    ///
+    /// # Errors
+    /// A sentence with the name and the reason.
+    fn solid_step(&self, name: &str) -> Result<(usize, ShapeSpec), String> {
+        Err(format!("there is no step `{name}` here"))
+    }
+
     /// The strokes of the sketch `file`.
     ///
     /// # Errors
@@ -293,6 +376,32 @@ impl Lookup<'_> {
                 let mesh = ClosedMesh::new(points, triangles).map_err(|message| format!("`{file}`: {message}"))?;
                 Solid::Mesh(Arc::new(mesh))
             }
+            SolidSpec::Letters { text, font, size, at, depth } => {
+                let rings = self.files.letters(text, font.as_deref())?;
+                outlined(&rings, *size, *at, *depth).map_err(|message| format!("{text:?}: {message}"))?
+            }
+            SolidSpec::Picture { file, height, at, threshold, bright, depth } => {
+                let rings = self.files.picture_outlines(file, *threshold, *bright)?;
+                outlined(&rings, *height, *at, *depth).map_err(|message| format!("`{file}`: {message}"))?
+            }
+            SolidSpec::Shell { of, outside, inside } => {
+                if outside + inside <= 0.0 {
+                    return Err("a shell needs an `outside` or an `inside` above 0".to_owned());
+                }
+                Solid::Shell { of: self.shape(of)?, outside: *outside, inside: *inside }
+            }
+            SolidSpec::Grown(step) => {
+                let (index, space) = self.files.solid_step(step)?;
+                // Named like no shape can be.
+                let mark = format!("what `{step}` grows in");
+                if self.within.contains(&mark) {
+                    return Err(format!("step `{step}` grows in what it grew itself"));
+                }
+                self.within.push(mark);
+                let bounds = self.shape(&space)?.bounds();
+                self.within.pop();
+                Solid::Grown(index, bounds)
+            }
             SolidSpec::Placed { shape, scale, about, turn, by } => {
                 let axis = about.map_or(DVec3::Y, |p| p.0);
                 let axis = axis.try_normalize().ok_or("an axis needs a direction, not the zero vector")?;
@@ -301,4 +410,18 @@ impl Lookup<'_> {
             }
         }))
     }
+}
+
+/// Outlines of unit size as a solid of this one; `at` is where their origin is.
+fn outlined(rings: &Rings, size: f64, at: Option<Point>, depth: Option<f64>) -> Result<Solid, String> {
+    let at = at.map_or(DVec3::ZERO, |p| p.0);
+    // Upright in space, only the middle is along y.
+    let origin = if depth.is_some() { DVec2::new(at.x, at.z) } else { at.truncate() };
+    let placed: Rings = rings.iter().map(|ring| ring.iter().map(|&p| origin + p * size).collect()).collect();
+    let solid = Solid::Outlined { outline: Arc::new(Outline::new(&placed)?), depth };
+    Ok(if depth.is_some() && at.y != 0.0 {
+        Solid::Placed { shape: Shape::new(solid), scale: 1.0, turn: DMat3::IDENTITY, by: DVec3::new(0.0, at.y, 0.0) }
+    } else {
+        solid
+    })
 }

@@ -8,6 +8,7 @@ use crate::geom::Shape;
 use crate::graph::{Graph, Lattice, Node, Scatter};
 use crate::math::DVec3;
 use crate::plan::Plan;
+use crate::raster::contours;
 
 /// More nodes or edges than this make a drawing that is black all over.
 const MOST_DRAWN: u64 = 250_000;
@@ -168,8 +169,8 @@ fn cost_contours<const N: usize>(step: &Step, space: &LatticeSpace, plan: &Plan<
         p
     };
     (1..=CONTOURS)
-        .flat_map(|line| contour(size, |x, y| cost(x, y) - most * f64::from(line) / f64::from(CONTOURS + 1)))
-        .map(|segment| segment.map(|[x, y]| place(x, y)).to_vec())
+        .flat_map(|line| contours(size, |x, y| cost(x, y) - most * f64::from(line) / f64::from(CONTOURS + 1)))
+        .map(|line| line.into_iter().map(|p| place(p.x, p.y)).collect())
         .collect()
 }
 
@@ -191,33 +192,7 @@ fn sections(shape: &Shape, is_plane: bool) -> Vec<Vec<DVec3>> {
             p
         };
         let value = |x: u32, y: u32| shape.distance(place(f64::from(x), f64::from(y)));
-        lines.extend(contour(size, value).into_iter().map(|s| s.map(|[x, y]| place(x, y)).to_vec()));
+        lines.extend(contours(size, value).into_iter().map(|line| line.into_iter().map(|p| place(p.x, p.y)).collect::<Vec<_>>()));
     }
     lines
-}
-
-/// The line where `value` changes sign, as segments, by marching squares on a grid of `size` samples; squares with a
-/// value that is not a number are left out.
-fn contour(size: [u32; 2], value: impl Fn(u32, u32) -> f64) -> Vec<[[f64; 2]; 2]> {
-    let mut segments = Vec::new();
-    for y in 0..size[1].saturating_sub(1) {
-        for x in 0..size[0].saturating_sub(1) {
-            let corners = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]];
-            let values = corners.map(|[x, y]| value(x, y));
-            if values.iter().any(|v| v.is_nan()) {
-                continue;
-            }
-            let mut crossings = Vec::with_capacity(4);
-            for i in 0..4 {
-                let (a, b) = (values[i], values[(i + 1) % 4]);
-                if (a < 0.0) != (b < 0.0) {
-                    let t = a / (a - b);
-                    let ([ax, ay], [bx, by]) = (corners[i].map(f64::from), corners[(i + 1) % 4].map(f64::from));
-                    crossings.push([ax + (bx - ax) * t, ay + (by - ay) * t]);
-                }
-            }
-            segments.extend(crossings.chunks_exact(2).map(|pair| [pair[0], pair[1]]));
-        }
-    }
-    segments
 }

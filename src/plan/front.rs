@@ -46,6 +46,11 @@ impl Width {
         cell >> self.shift << self.shift
     }
 
+    /// The bits of a cell below its bucket.
+    pub fn within(self) -> u32 {
+        (1 << self.shift) - 1
+    }
+
     /// Where the bucket after the one at `base` starts.
     pub fn next(self, base: u32) -> u32 {
         base.wrapping_add(1 << self.shift)
@@ -59,6 +64,9 @@ pub(super) struct Front<'a, G> {
     pub width: Width,
     /// The cell of a generator: the least cost there is.
     pub start: u32,
+    /// Nodes that come down within their bucket wait in it already: the bits below a bucket. 0 where they do not, since
+    /// their costs are those of an earlier search.
+    pub waiting: u32,
 }
 
 /// The nodes that a search still waits for.
@@ -90,9 +98,8 @@ impl<G: Graph> Front<'_, G> {
     /// without unforeseeable branches; returns how many were settled. `SHARED` allows other threads to do the same.
     #[inline(always)]
     pub fn advance<const SHARED: bool>(&self, base: u32, nodes: &[u32], buckets: &mut Buckets) -> usize {
-        let Self { graph, cells, width, .. } = *self;
+        let Self { graph, cells, width, waiting, .. } = *self;
         let current = width.bucket(base);
-        let within = (1 << width.shift) - 1;
         let mut live = [(Node(0), 0_usize, 0_u32); CHUNK];
         let mut lives = 0;
         for &node in nodes {
@@ -112,7 +119,7 @@ impl<G: Graph> Front<'_, G> {
                 let new = cost.wrapping_add(edge.weight << G::SLOT_BITS) | (edge.back + 1);
                 let old = if is_shared { cells.lower_shared(edge.cell, new) } else { cells.lower(edge.cell, new) };
                 // A node is pushed when it comes down from a higher bucket.
-                let above = old.wrapping_sub(new & !within) as i32 > within as i32;
+                let above = old.wrapping_sub(new & !waiting) as i32 > waiting as i32;
                 buckets.push_if(above, width.bucket(new), edge.node);
             });
         };

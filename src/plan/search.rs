@@ -1,7 +1,7 @@
 //! The search: least costs from generators, by buckets that are final when they are popped.
 
 use super::buckets::Buckets;
-use super::cells::Cells;
+use super::cells::{Cells, slot_mask};
 use super::front::{Front, MOST_BUCKETS, Wanted, Width};
 use super::shared;
 use super::tree::Plan;
@@ -11,6 +11,9 @@ use crate::math::{Cancelled, Progress};
 /// More threads than this wait for each other more than they work.
 const MOST_THREADS: usize = 8;
 
+/// Cells of costs above this, in the units of a cell, cannot be told from lower ones by more than a bucket.
+const FARTHEST: u64 = 1 << 31;
+
 /// How far a search goes.
 #[derive(Clone, Copy, Debug)]
 pub enum Goal<'a> {
@@ -18,6 +21,8 @@ pub enum Goal<'a> {
     Everything,
     /// Until all of these are settled, or nothing is left.
     Nodes(&'a [Node]),
+    /// To every node that costs no more than this (fixed-point), and perhaps a few more.
+    Within(u64),
 }
 
 /// Why a search gave no plan.
@@ -111,39 +116,72 @@ pub(super) fn plan_on<'g, G: Graph>(
             buckets.push_if(true, width.bucket(start), generator);
         }
     }
-    let wanted = match goal {
-        Goal::Everything => None,
-        Goal::Nodes(nodes) => Some(nodes),
+    let (wanted, most) = match goal {
+        Goal::Everything => (None, u64::MAX),
+        Goal::Nodes(nodes) => (Some(nodes), u64::MAX),
+        Goal::Within(most) => (None, most),
     };
-    let front = Front { graph, cells: &cells, width, start };
-    let settled = if threads > 1 {
+    let front = Front { graph, cells: &cells, width, start, waiting: width.within() };
+    let (settled, farthest) = if threads > 1 && most == u64::MAX {
         // Rounded down to a power of two.
-        shared::run(front, buckets, wanted, 1 << threads.ilog2(), progress)?
+        (shared::run(front, buckets, wanted, 1 << threads.ilog2(), progress)?, u64::MAX)
     } else {
         // Costs are compared modulo 2^32: none may start farther from its neighbours than that allows.
-        let most = 1_u64 << (30 - G::SLOT_BITS);
-        let mut later: Vec<(Node, u64)> = later.iter().map(|&(node, cost)| (node, cost.min(most))).collect();
+        let latest = 1_u64 << (30 - G::SLOT_BITS);
+        let mut later: Vec<(Node, u64)> = later.iter().map(|&(node, cost)| (node, cost.min(latest))).collect();
         later.sort_unstable_by_key(|&(node, cost)| (cost, node));
-        run_alone(&front, buckets, &later, Wanted::new(wanted), progress)?
+        run_alone(&front, buckets, &later, (Wanted::new(wanted), most), progress)?
     };
-    Ok(Plan::new(graph, cells, settled))
+    Ok(Plan::new(graph, cells, settled, farthest))
 }
 
-/// The search on one thread; returns how many nodes were settled.
+impl<G: Graph> Plan<'_, G> {
+    /// Makes all of `generators`, those of the search among them, generators, after a search for [`Goal::Everything`]: what
+    /// [`plan`] from them would give, but only nodes that become cheaper are visited (2007, section 3.2: every iteration
+    /// plans to the whole structure that the one before made).
+    ///
+    /// # Errors
+    /// As [`plan`].
+    pub fn extend(&mut self, generators: &[Node], progress: &Progress) -> Result<(), PlanError> {
+        let (graph, cells, farthest) = self.parts();
+        if farthest >= FARTHEST {
+            *self = plan_on(graph, generators, &[], Goal::Everything, 1, progress)?;
+            return Ok(());
+        }
+        let width = Width::new(graph.weight_range(), G::SLOT_BITS)?;
+        let mut buckets = Buckets::new(width.count());
+        let start = 1 << G::SLOT_BITS;
+        for &generator in generators {
+            let cell = graph.cell(generator);
+            if cells.get(cell) != start {
+                cells.set(cell, start);
+                buckets.push_if(true, width.bucket(start), generator);
+            }
+        }
+        let front = Front { graph, cells, width, start, waiting: 0 };
+        run_alone(&front, buckets, &[], (Wanted::new(None), u64::MAX), progress)?;
+        Ok(())
+    }
+}
+
+/// The search on one thread, until all of `until` are settled or everything up to that cost is; returns how many nodes
+/// were settled, and where the last bucket ended.
 fn run_alone<G: Graph>(
     front: &Front<'_, G>,
     mut buckets: Buckets,
     mut later: &[(Node, u64)],
-    mut wanted: Wanted,
+    until: (Wanted, u64),
     progress: &Progress,
-) -> Result<usize, Cancelled> {
-    let Front { graph, cells, width, start } = *front;
+) -> Result<(usize, u64), Cancelled> {
+    let (mut wanted, most) = until;
+    let Front { graph, cells, width, start, .. } = *front;
     let mut settled = 0;
     let mut base = width.base(start);
     // Where the bucket after this one starts, not wrapped.
     let mut end = u64::from(width.next(base));
     // Nothing waits once a whole round of buckets was empty.
     let mut idle = 0;
+    let limit = most.saturating_mul(1 << G::SLOT_BITS).saturating_add(u64::from(start));
     for turn in 0_u32.. {
         while let Some((&(node, cost), rest)) =
             later.split_first().filter(|(first, _)| u64::from(start) + (first.1 << G::SLOT_BITS) < end)
@@ -165,12 +203,12 @@ fn run_alone<G: Graph>(
             settled += front.advance::<false>(base, &places[1..len], &mut buckets);
         }
         base = width.next(base);
-        if idle >= width.count() || wanted.is_done(front, base) {
+        if idle >= width.count() || end - u64::from(width.next(0)) > limit || wanted.is_done(front, base) {
             break;
         }
         if turn.is_multiple_of(1024) {
             progress.report("plan", settled as f64 / graph.cells() as f64)?;
         }
     }
-    Ok(settled)
+    Ok((settled, end))
 }

@@ -176,3 +176,28 @@ fn too_wide_a_range_is_refused() {
     let steep = lattice(5.7).unwrap();
     assert!(plan(&steep, &[steep.node([0; 3])], Goal::Everything, &Progress::default()).is_ok());
 }
+
+/// Generators that are added later give what a search from all of them gives, and a search within a cost has all below it.
+#[test]
+fn searches_go_on_and_stop() {
+    for (seed, holes, alpha) in [(1, false, 1.0), (2, true, 3.0), (3, true, 1.0)] {
+        let lattice = lattice::<8>([120, 90, 1], seed, alpha, false, holes);
+        let nodes: Vec<Node> = lattice.nodes().collect();
+        let mut generators = vec![nodes[nodes.len() / 3]];
+        let mut grown = plan(&lattice, &generators, Goal::Everything, &Progress::default()).unwrap();
+        for round in 0..3 {
+            generators.extend(nodes.iter().skip(round * 7 + 5).step_by(977));
+            grown.extend(&generators, &Progress::default()).unwrap();
+            let whole = plan(&lattice, &generators, Goal::Everything, &Progress::default()).unwrap();
+            for &node in &nodes {
+                assert_eq!((grown.cost(node), grown.predecessor(node)), (whole.cost(node), whole.predecessor(node)));
+            }
+        }
+        let most = 12 << lattice.weight_range().fraction;
+        let near = plan(&lattice, &generators, Goal::Within(most), &Progress::default()).unwrap();
+        assert!(near.settled() < grown.costs(nodes.iter().copied()).iter().flatten().count());
+        for &node in nodes.iter().filter(|&&node| grown.cost(node).is_some_and(|cost| cost <= most)) {
+            assert_eq!((near.cost(node), near.predecessor(node)), (grown.cost(node), grown.predecessor(node)));
+        }
+    }
+}

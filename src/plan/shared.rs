@@ -92,7 +92,7 @@ impl<G: Graph> Shared<'_, G> {
     /// reaches it, and sorted to its owner when its bucket is taken.
     fn work(&self, own: usize, mut buckets: Buckets, mut wanted: Wanted, progress: Option<&Progress>) {
         let front = &self.front;
-        let Front { graph, cells, width, start } = *front;
+        let Front { graph, cells, width, start, .. } = *front;
         let mut base = width.base(start);
         let mut idle = 0;
         // A power of two, so that slabs fall to their owners by a mask.

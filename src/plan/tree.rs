@@ -8,11 +8,17 @@ pub struct Plan<'g, G> {
     graph: &'g G,
     cells: Cells,
     settled: usize,
+    /// No cost is above this, in the units of a cell, from the start on.
+    farthest: u64,
 }
 
 impl<'g, G: Graph> Plan<'g, G> {
-    pub(super) fn new(graph: &'g G, cells: Cells, settled: usize) -> Self {
-        Self { graph, cells, settled }
+    pub(super) fn new(graph: &'g G, cells: Cells, settled: usize, farthest: u64) -> Self {
+        Self { graph, cells, settled, farthest }
+    }
+
+    pub(super) fn parts(&self) -> (&'g G, &Cells, u64) {
+        (self.graph, &self.cells, self.farthest)
     }
 
     /// The graph that was planned over.

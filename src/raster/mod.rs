@@ -2,12 +2,14 @@
 //!
 //! Later stages need never handle a picture without pixels or a buffer of the wrong length.
 
+mod contour;
 mod grey;
 mod layers;
 mod panorama;
 mod plate;
 mod tone;
 
+pub use contour::contours;
 pub use grey::Grey;
 pub use layers::{Channel, Layers};
 pub use panorama::Panorama;
