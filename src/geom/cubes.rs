@@ -3,7 +3,9 @@
 
 use std::sync::OnceLock;
 
-use crate::math::DVec3;
+use earcut::Earcut;
+
+use crate::math::{DVec2, DVec3};
 
 /// A surface of triangles, counterclockwise seen from outside.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -217,6 +219,12 @@ impl Surface {
         self
     }
 
+    /// The normal of each point: the mean of those around it, by area.
+    #[must_use]
+    pub fn normals(&self) -> Vec<DVec3> {
+        vertex_normals(&self.points, &self.triangles)
+    }
+
     /// The volume within, negative where it is turned inside out.
     #[must_use]
     pub fn volume(&self) -> f64 {
@@ -272,6 +280,61 @@ impl Surface {
                 })
             })
     }
+}
+
+/// The normal of each of `points`, of length 1: the mean of those of the `triangles` around it, by area.
+#[must_use]
+pub fn vertex_normals(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
+    let mut normals = vec![DVec3::ZERO; points.len()];
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|i| points[i as usize]);
+        let normal = (b - a).cross(c - a);
+        triangle.iter().for_each(|&i| normals[i as usize] += normal);
+    }
+    normals.into_iter().map(|n| n.normalize_or(DVec3::Z)).collect()
+}
+
+/// What `rings` enclose, as triangles of the plane: outer ones run counterclockwise, holes the other way.
+#[must_use]
+pub fn fill(rings: &[Vec<DVec2>]) -> Surface {
+    let area = |ring: &[DVec2]| {
+        let after = ring.iter().cycle().skip(1);
+        ring.iter().zip(after).map(|(a, b)| a.perp_dot(*b)).sum::<f64>()
+    };
+    let contains = |ring: &[DVec2], p: DVec2| {
+        let after = ring.iter().cycle().skip(1);
+        let crosses = |(a, b): (&DVec2, &DVec2)| {
+            (a.y <= p.y) != (b.y <= p.y) && a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) > p.x
+        };
+        ring.iter().zip(after).filter(|&edge| crosses(edge)).count() % 2 == 1
+    };
+    let (outer, holes): (Vec<&Vec<DVec2>>, Vec<&Vec<DVec2>>) = rings.iter().partition(|ring| area(ring) > 0.0);
+    // A hole belongs to the least ring around it.
+    let owner = |hole: &[DVec2]| {
+        let around = (0..outer.len()).filter(|&i| contains(outer[i], hole[0]));
+        around.min_by(|&a, &b| area(outer[a]).total_cmp(&area(outer[b])))
+    };
+    let mut owned: Vec<Vec<&Vec<DVec2>>> = vec![Vec::new(); outer.len()];
+    for hole in holes {
+        if let Some(owner) = owner(hole) {
+            owned[owner].push(hole);
+        }
+    }
+    let mut surface = Surface::default();
+    for (ring, holes) in outer.iter().zip(owned) {
+        let mut points: Vec<[f64; 2]> = ring.iter().map(|p| p.to_array()).collect();
+        let mut starts: Vec<u32> = Vec::new();
+        for hole in holes {
+            starts.push(points.len() as u32);
+            points.extend(hole.iter().map(|p| p.to_array()));
+        }
+        let mut triangles: Vec<u32> = Vec::new();
+        Earcut::new().earcut(points.iter().copied(), &starts, &mut triangles);
+        let first = surface.points.len() as u32;
+        surface.points.extend(points.iter().map(|&[x, y]| DVec3::new(x, y, 0.0)));
+        surface.triangles.extend(triangles.chunks_exact(3).map(|t| [t[0] + first, t[1] + first, t[2] + first]));
+    }
+    surface
 }
 
 #[cfg(test)]

@@ -15,7 +15,7 @@ mod voxels;
 
 pub use bounds::Bounds;
 pub use closed_mesh::ClosedMesh;
-pub use cubes::Surface;
+pub use cubes::{Surface, fill, vertex_normals};
 pub use outline::{Outline, simplified};
 pub use profile::Profile;
 pub use round_cone::{Frustum, frustum};

@@ -276,6 +276,12 @@ impl<const N: usize> Lattice<N> {
         self.window.position(self.unpack(node))
     }
 
+    /// The steps to the neighbours of a node.
+    #[must_use]
+    pub fn steps(&self) -> &'static [[i32; 3]; N] {
+        &Self::STEPS
+    }
+
     /// Every node that is open, in the order of cells.
     pub fn nodes(&self) -> impl Iterator<Item = Node> + '_ {
         let [x, y, z] = self.window.size;
@@ -313,6 +319,13 @@ impl<const N: usize> Lattice<N> {
     #[must_use]
     pub fn open_nodes(&self) -> u64 {
         self.mask.as_ref().map_or_else(|| self.window.nodes(), |m| m.open() as u64)
+    }
+
+    /// The coordinates of `node` within the window.
+    #[inline]
+    #[must_use]
+    pub fn coordinates(&self, node: Node) -> [u32; 3] {
+        self.unpack(node)
     }
 
     #[inline(always)]

@@ -151,7 +151,7 @@ fn cost_contours<const N: usize>(step: &Step, space: &LatticeSpace, plan: &Plan<
     let root = match &step.source {
         Source::At(points) => points[0],
         Source::Inside(shape) => shape.bounds().centre(),
-        Source::Steps(..) => space.shape.bounds().centre(),
+        Source::Steps(..) | Source::Spread(_) => space.shape.bounds().centre(),
     };
     let up = space.up();
     let depth = if up == 1 { 0 } else { window.nearest(root).map_or(window.size[1] / 2, |at| at[1]) };

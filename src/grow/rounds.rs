@@ -155,7 +155,7 @@ impl<'a> Rounds<'a> {
         let up = if space.is_plane { DVec3::Y } else { DVec3::Z };
         match &step.source {
             Source::At(points) => points.iter().for_each(|&p| begin(p, up, None)),
-            Source::Inside(_) => {
+            Source::Inside(_) | Source::Spread(_) => {
                 return Err(wrong("from", "a repeated step starts from points or the ends of steps".to_owned()));
             }
             Source::Steps(steps, part) => {
@@ -182,6 +182,7 @@ impl<'a> Rounds<'a> {
             settled: 0,
             dropped: 0,
             marks: Vec::new(),
+            regions: None,
         };
         let sets = vec![None; SETS as usize];
         Ok(Self { step, repeat, space, seed, table, sets, ends, round: 0, level, grown })

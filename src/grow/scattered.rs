@@ -228,6 +228,7 @@ impl Step {
             edges: graph.count_edges(),
             settled,
             marks,
+            regions: None,
             skeleton: self.finish(skeleton, grown)?,
             dropped,
         })
@@ -240,7 +241,8 @@ impl Step {
         let places = match &self.source {
             Source::At(points) => points.clone(),
             // Known once there are nodes.
-            Source::Inside(_) => return Ok(Vec::new()),
+            // Random ones are refused for scattered nodes.
+            Source::Inside(_) | Source::Spread(_) => return Ok(Vec::new()),
             Source::Steps(steps, part) => {
                 let mut places = Vec::new();
                 for &step in steps {

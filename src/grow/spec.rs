@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{ClustersSpec, DbmSpec, RefineSpec, RepeatSpec, Space, Step};
+use super::{ClustersSpec, DbmSpec, DlaSpec, FractalSpec, GrammarSpec, RefineSpec, RegionsSpec, RepeatSpec, Space, Step};
 use crate::geom::ShapeSpec;
 use crate::graph::{FieldSpec, Neighbours, Weights};
 use crate::math::{PerRound, Point, Ref};
-use crate::skeleton::{FormSpec, Width};
+use crate::skeleton::{FormSpec, SymmetrySpec, Width};
 
 /// A randomly weighted graph in a shape, where paths are planned.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -53,6 +53,12 @@ pub enum NodesSpec {
 }
 
 impl NodesSpec {
+    /// Is it a regular lattice?
+    #[must_use]
+    pub fn is_lattice(&self) -> bool {
+        matches!(self, Self::Lattice(_))
+    }
+
     /// Do the nodes lie in a plane?
     #[must_use]
     pub fn is_plane(&self) -> bool {
@@ -106,7 +112,8 @@ pub struct StepSpec {
     pub space: Ref<Space>,
     /// Where paths start.
     pub from: FromSpec,
-    /// Where paths go: sets of endpoints, by name.
+    /// Where paths go: sets of endpoints, by name. Aggregates and regions have none.
+    #[serde(default)]
     pub to: BTreeMap<String, EndpointSpec>,
     /// How limbs come about: by least-cost paths, unless said otherwise.
     #[serde(default)]
@@ -115,12 +122,20 @@ pub struct StepSpec {
     /// around the end, with its z along the way the limb came (Xu and Mould 2012, section 3.2).
     #[serde(default)]
     pub repeat: Option<RepeatSpec>,
-    /// Radii along the paths; limbs that start on another step are nowhere wider than that is there.
-    pub width: Width,
+    /// Radii along the paths; limbs that start on another step are nowhere wider than that is there. Regions have none.
+    #[serde(default)]
+    pub width: Option<Width>,
     /// Natural limbs, for widths by `length` and `pipe`: what belongs together becomes one limb, kinks become curves,
     /// forks blend. Steps that take their width from the step they grow from take this from it too.
     #[serde(default)]
     pub form: Option<FormSpec>,
+    /// Every path becomes a strand of its own, of so many straight pieces: hair, fur, moss (2007, Fig. 15).
+    #[serde(default)]
+    #[schemars(range(min = 1, max = 1000))]
+    pub strands: Option<u32>,
+    /// What grew stands around an axis several times.
+    #[serde(default)]
+    pub symmetry: Option<SymmetrySpec>,
     /// What it costs to go along the step that this one grows from, over what it costs elsewhere: at 0 branches leave at
     /// right angles, at 0.7 at about half of one.
     #[serde(default)]
@@ -147,6 +162,8 @@ pub enum FromSpec {
     At(#[schemars(length(min = 1))] Vec<Point>),
     /// All nodes in a shape.
     Inside(ShapeSpec),
+    /// Nodes at random, each a generator of its own (on a lattice): seeds of regions, or plants that compete for space.
+    Spread(SpreadSpec),
     /// Everywhere on what this step grew: carried to the nearest nodes, and joined where it is.
     All(Ref<Step>),
     /// At the ends of the paths of this step; of a repeated one at those from which it did not grow on.
@@ -156,6 +173,22 @@ pub enum FromSpec {
     EveryEnd(#[schemars(length(min = 1))] Vec<Ref<Step>>),
 }
 
+/// Generators at random.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpreadSpec {
+    /// How many.
+    #[schemars(range(min = 1, max = 1_000_000))]
+    pub count: u32,
+    /// Where; by default anywhere in the space.
+    #[serde(default)]
+    pub inside: Option<ShapeSpec>,
+    /// Least distance between them, in scene units.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub apart: f64,
+}
+
 /// How limbs come about.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -163,8 +196,15 @@ pub enum MethodSpec {
     /// By least-cost paths (Xu and Mould 2007, section 3).
     #[default]
     Paths,
+    /// By least-cost paths to endpoints at a distance from all that has grown, again and again (2007, section 3.2); on
+    /// lattices.
+    Fractal(FractalSpec),
+    /// Not limbs but solids: all that is nearest to each generator (2007, section 3.4); on lattices.
+    Regions(RegionsSpec),
     /// By the dielectric breakdown model, as a baseline.
     Dbm(DbmSpec),
+    /// By diffusion-limited aggregation, as a baseline.
+    Dla(DlaSpec),
 }
 
 /// Endpoints in the vicinity of what a step grew (Xu and Mould 2007, section 4: side branches of lightning).
@@ -200,7 +240,7 @@ pub enum Toward {
     Along,
 }
 
-/// A set of endpoints: exactly one of `count`, `at`, `through` and `sketch`. Adding to `count` keeps those already placed.
+/// A set of endpoints: exactly one of `count`, `at`, `through`, `sketch` and `grammar`. Adding to `count` keeps those already placed.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EndpointSpec {
@@ -234,6 +274,9 @@ pub struct EndpointSpec {
     /// the end of each open stroke.
     #[serde(default)]
     pub sketch: Option<String>,
+    /// Endpoints from an L-system.
+    #[serde(default)]
+    pub grammar: Option<GrammarSpec>,
     /// The class of their paths, for widths that differ by class.
     #[serde(default = "main_class")]
     #[schemars(length(min = 1))]

@@ -3,12 +3,15 @@
 use std::collections::HashMap;
 
 use super::construction::{Mark, MarkKind, construction};
-use super::{Dbm, Endpoints, LatticeSpace, Near, Placement, Refine, Repeat, SIDE, Solver, Space, Unreached};
+use super::{
+    Dbm, DlaSpec, Endpoints, FractalSpec, LatticeSpace, Near, Placement, Refine, Regions, RegionsSpec, Repeat, SIDE, Solver,
+    Space, Unreached,
+};
 use crate::geom::Shape;
 use crate::graph::{Graph, Lattice, LatticeError, Node};
-use crate::math::{Cancelled, DVec3, Progress};
+use crate::math::{Cancelled, DVec3, Progress, Stream};
 use crate::plan::{Goal, Plan, PlanError, mean_cost, plan, plan_delayed};
-use crate::skeleton::{Form, Skeleton, SkeletonNode, Width, bend, smooth};
+use crate::skeleton::{Form, Skeleton, SkeletonNode, SymmetrySpec, Width, bend, smooth};
 
 /// A step whose names and files are resolved.
 #[derive(Clone, Debug)]
@@ -33,6 +36,10 @@ pub struct Step {
     pub width: Width,
     /// Natural limbs.
     pub form: Option<Form>,
+    /// Of how many pieces a strand is, where every path is one.
+    pub strands: Option<u32>,
+    /// How often what grew stands around an axis.
+    pub symmetry: Option<SymmetrySpec>,
     /// What it costs to go along the step that this one grows from, over what it costs elsewhere.
     pub along: f64,
     /// How paths are planned again.
@@ -50,6 +57,8 @@ pub enum Source {
     At(Vec<DVec3>),
     /// All nodes in a shape.
     Inside(Shape),
+    /// Nodes at random.
+    Spread(Placement),
     /// What the steps with these indices have grown.
     Steps(Vec<usize>, Part),
 }
@@ -66,10 +75,16 @@ pub enum Part {
 }
 
 /// How limbs come about.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Method {
     /// By least-cost paths.
     Paths,
+    /// By least-cost paths to endpoints near all that has grown.
+    Fractal(FractalSpec),
+    /// As solids.
+    Regions(RegionsSpec),
+    /// By diffusion-limited aggregation.
+    Dla(DlaSpec),
     /// By the dielectric breakdown model.
     Dbm(Dbm),
 }
@@ -98,6 +113,8 @@ pub struct Grown {
     pub dropped: usize,
     /// What construction drawings show, where asked for.
     pub marks: Vec<Mark>,
+    /// What it grew in place of limbs.
+    pub regions: Option<Regions>,
 }
 
 /// Why a step did not grow.
@@ -145,7 +162,7 @@ impl Step {
             Placement::Near(Near { step, .. }) => Some(*step),
             Placement::At(_) | Placement::Through(_) | Placement::Random { .. } => None,
         };
-        self.sources().iter().copied().chain(self.endpoints.iter().filter_map(near))
+        self.sources().iter().copied().chain(self.endpoints.iter().filter_map(near)).chain(self.solids())
     }
 
     /// The steps that this one grows from.
@@ -194,7 +211,7 @@ impl Step {
             let key = if matches!(error, LatticeError::Weights(_)) { ".weights" } else { ".nodes" };
             in_space(key, error.to_string())
         })?;
-        let starts = self.starts(&lattice, grown)?;
+        let starts = self.starts(&lattice, space, seed, grown)?;
         let mut wanted: Vec<Wanted<'_>> = Vec::new();
         for set in &self.endpoints {
             let nodes = set.placement.place(&lattice, &space.shape, seed, grown).map_err(|message| {
@@ -204,7 +221,23 @@ impl Step {
         }
         let nodes: Vec<Node> = wanted.iter().map(|&(node, ..)| node).collect();
         let generators: Vec<Node> = starts.iter().map(|&(node, _)| node).collect();
-        let (skeleton, dropped, settled, marks) = match self.method {
+        let mut regions = None;
+        let (skeleton, dropped, settled, marks) = match &self.method {
+            Method::Fractal(fractal) => {
+                let (skeleton, settled) = self.grow_fractal(fractal, &lattice, &starts, seed, progress)?;
+                (skeleton, 0, settled, Vec::new())
+            }
+            Method::Regions(spec) => {
+                let (found, settled) = self.grow_regions(spec, space, &lattice, &generators, seed, progress)?;
+                regions = Some(found);
+                (Skeleton::new(self.classes.clone()), 0, settled, Vec::new())
+            }
+            Method::Dla(dla) => {
+                let random = Stream::new(seed, &format!("dla/{}", self.name));
+                let skeleton = dla.grow(&lattice, &generators, self.classes.clone(), random, progress)?;
+                let settled = skeleton.nodes.len() as u64;
+                (skeleton, 0, settled, Vec::new())
+            }
             Method::Paths => {
                 let goal = if show.contains(&MarkKind::Contours) { Goal::Everything } else { Goal::Nodes(&nodes) };
                 let later = self.delays(space, &lattice, &starts, grown);
@@ -213,10 +246,7 @@ impl Step {
                 } else {
                     plan_delayed(&lattice, &[], &later, goal, progress)
                 };
-                let plan = plan.map_err(|error| match error {
-                    PlanError::Cancelled(cancelled) => GrowError::Cancelled(cancelled),
-                    PlanError::TooWide { .. } => in_space(".weights", error.to_string()),
-                })?;
+                let plan = plan.map_err(|error| self.plan_error(error))?;
                 let (skeleton, dropped) = self.paths(&plan, &starts, &wanted)?;
                 let marks =
                     construction(self, space, &plan, &nodes, show).map_err(|message| in_space(".nodes", message))?;
@@ -224,7 +254,7 @@ impl Step {
             }
             Method::Dbm(dbm) => {
                 let ends: Vec<(Node, u16)> = wanted.iter().map(|&(node, _, set)| (node, set.class)).collect();
-                let random = crate::math::Stream::new(seed, &format!("dbm/{}", self.name));
+                let random = Stream::new(seed, &format!("dbm/{}", self.name));
                 let (skeleton, settled) =
                     dbm.grow(&lattice, &generators, &ends, self.classes.clone(), random, progress)?;
                 let has_end = skeleton.paths.first().is_some_and(|path| self.classes[path.class as usize] != SIDE);
@@ -255,13 +285,27 @@ impl Step {
             marks,
             skeleton: self.finish(skeleton, grown)?,
             dropped,
+            regions,
         })
+    }
+
+    /// What is told of a search that failed.
+    pub(super) fn plan_error(&self, error: PlanError) -> GrowError {
+        match error {
+            PlanError::Cancelled(cancelled) => GrowError::Cancelled(cancelled),
+            PlanError::TooWide { .. } => {
+                let place = format!("space.{}.weights", self.space_name);
+                GrowError::Scene { place, message: error.to_string() }
+            }
+        }
     }
 
     /// The generators, and where exactly each is meant where that is told. No node is named twice.
     fn starts<const N: usize>(
         &self,
         lattice: &Lattice<N>,
+        space: &LatticeSpace,
+        seed: u64,
         grown: &[Option<&Skeleton>],
     ) -> Result<Vec<(Node, Option<DVec3>)>, GrowError> {
         let wrong =
@@ -279,6 +323,9 @@ impl Step {
             Source::Inside(shape) => {
                 lattice.nodes().filter(|&n| shape.contains(lattice.position(n))).map(|n| (n, None)).collect()
             }
+            Source::Spread(placement) => {
+                placement.place(lattice, &space.shape, seed, grown).map_err(|message| wrong(&message))?
+            }
             Source::Steps(steps, part) => {
                 let mut places = Vec::new();
                 for &step in steps {
@@ -290,7 +337,7 @@ impl Step {
         if starts.is_empty() {
             return Err(wrong(match self.source {
                 Source::Steps(..) => "nothing of that step lies in the space",
-                Source::At(_) | Source::Inside(_) => "no node of the space lies in this shape",
+                Source::At(_) | Source::Inside(_) | Source::Spread(_) => "no node of the space lies in this shape",
             }));
         }
         // Of several places about a node the nearest, then the first.
@@ -390,7 +437,14 @@ impl Step {
         if self.repeat.is_none() {
             skeleton.root_paths();
             let level = self.first_level(grown);
-            skeleton.nodes.iter_mut().for_each(|node| node.level = level);
+            // Fractal placement counts its iterations.
+            skeleton.nodes.iter_mut().for_each(|node| node.level += level);
+        }
+        if matches!(self.method, Method::Regions(_)) {
+            return Ok(skeleton);
+        }
+        if let Some(pieces) = self.strands {
+            skeleton = skeleton.strands(pieces);
         }
         self.width
             .apply(&mut skeleton)
@@ -400,6 +454,9 @@ impl Step {
             skeleton = bend(&skeleton);
         }
         self.age(&mut skeleton, grown);
+        if let Some(symmetry) = &self.symmetry {
+            skeleton = skeleton.symmetric(symmetry);
+        }
         skeleton.number_branches();
         Ok(skeleton)
     }

@@ -8,10 +8,12 @@ mod camera;
 mod dome;
 mod leaves;
 mod object;
+mod paint;
 mod pattern;
 mod skin;
 mod stroke;
 mod surface;
+mod thorns;
 mod view;
 
 pub use appearance::{FADE, Ground, GroundSpec, Light, LightSpec, Material, Sky, SkySpec};
@@ -19,9 +21,11 @@ pub use camera::{Camera, CameraSpec, Projected, Projection};
 pub use dome::Dome;
 pub use leaves::{LeafLight, LeavesSpec, ball_mesh, leaf_mesh};
 pub use object::{Ball, Digits, Instance, Mesh, Object, Pose};
+pub use paint::{PaintSpec, Painting};
 pub use pattern::{BARK, Frame, MOSS, Pattern, Wave, limb_frames};
 pub use skin::{Skin, SkinError, foot};
 pub use stroke::{CORE, CloudLight, GlowSpec, Halo, NearGlow, Piece, Stroke, shining};
+pub use thorns::ThornsSpec;
 pub use view::{BEYOND, Frame as ViewFrame, ViewSpec};
 
 use crate::geom::Bounds;

@@ -1,6 +1,7 @@
 //! Objects: balls and the limbs between them, or a mesh; and where they stand.
 
-use crate::geom::Bounds;
+use crate::geom::{Bounds, vertex_normals};
+use super::ThornsSpec;
 use crate::math::{DMat3, DVec3, Degrees};
 
 /// A sphere with what was known of its place in the skeleton.
@@ -35,13 +36,7 @@ pub struct Mesh {
 impl Mesh {
     /// Gives each corner the normal of the triangles around it, by their area.
     pub fn smooth(&mut self) {
-        let mut normals = vec![DVec3::ZERO; self.points.len()];
-        for triangle in &self.triangles {
-            let [a, b, c] = triangle.map(|i| self.points[i as usize]);
-            let normal = (b - a).cross(c - a);
-            triangle.iter().for_each(|&i| normals[i as usize] += normal);
-        }
-        self.normals = normals.into_iter().map(|n| n.normalize_or(DVec3::Z)).collect();
+        self.normals = vertex_normals(&self.points, &self.triangles);
     }
 
     /// Every number rounded once: points with these digits.
@@ -153,6 +148,10 @@ pub struct Object {
     pub digits: Digits,
     /// Does it cast shadows?
     pub shadow: bool,
+    /// What stands on its surface, for renderers that displace it themselves.
+    pub thorns: Option<ThornsSpec>,
+    /// Is it the thorns of another, which such renderers leave out?
+    pub is_thorns: bool,
 }
 
 impl Object {

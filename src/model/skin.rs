@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::surface::surface;
 use super::{Ball, Digits, Instance, Mesh, Object, Pose, to_world};
+use crate::geom::Surface;
+use crate::grow::IsosurfaceSpec;
 use crate::math::{DVec3, tolerance::INVISIBLE_RADIUS};
 use crate::skeleton::{Skeleton, overlap};
 
@@ -18,7 +20,7 @@ const MOST_SPHERES: u32 = 256;
 pub(super) const MOST_PRIMITIVES: usize = 20_000_000;
 
 /// How a skeleton becomes solid.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Skin {
     /// A sphere at each node, with more between them until they overlap (Xu and Mould 2008, section 4).
@@ -29,6 +31,10 @@ pub enum Skin {
     /// One smooth surface of triangles around limbs that are joined where one leaves another, with places for a texture
     /// around and along them. Copies share it, and its leaves, which a union of cones does not in POV-Ray.
     Mesh,
+    /// One surface around all that is no farther from the limbs than their width (2007, section 3.3).
+    Isosurface(IsosurfaceSpec),
+    /// Of steps by regions: their borders, an object each (2007, section 3.4).
+    Surface,
 }
 
 /// Why a skeleton has no skin.
@@ -43,6 +49,16 @@ pub enum SkinError {
     /// Too small or too large for renderers.
     #[error("its size is out of the range that renderers show, 0.001 to 1e7 scene units: change the spacing")]
     Size,
+}
+
+impl Mesh {
+    /// A closed surface as a mesh from `foot`, with smooth normals; in a flat scene its filled area.
+    #[must_use]
+    pub fn of_surface(surface: &Surface, foot: DVec3, is_flat: bool) -> Self {
+        let points = surface.points.iter().map(|&p| to_world(p - foot, is_flat)).collect();
+        let normals = if is_flat { Vec::new() } else { surface.normals() };
+        Self { points, normals, triangles: surface.triangles.clone(), uvs: Vec::new() }
+    }
 }
 
 impl Object {
@@ -73,6 +89,8 @@ impl Object {
             poses: Vec::new(),
             digits,
             shadow: true,
+            thorns: None,
+            is_thorns: false,
         })
     }
 }
@@ -104,6 +122,8 @@ impl Object {
             poses,
             digits,
             shadow: true,
+            thorns: None,
+            is_thorns: false,
         })
     }
 }
@@ -194,7 +214,7 @@ impl Skin {
             return Object::of_mesh(name, &mesh, to_world(root + offset, is_flat), material);
         }
         let skeletons: Vec<&Skeleton> = match self {
-            Self::Cones | Self::Mesh => skeletons.to_vec(),
+            Self::Cones | Self::Mesh | Self::Isosurface(_) | Self::Surface => skeletons.to_vec(),
             Self::Spheres => {
                 dense = skeletons.iter().map(|s| overlap(s, SPHERE_GAP, MOST_SPHERES)).collect::<Vec<_>>();
                 dense.iter().collect()
@@ -224,6 +244,8 @@ impl Skin {
             poses: Vec::new(),
             digits,
             shadow: true,
+            thorns: None,
+            is_thorns: false,
         };
         let mut branches = 0;
         for skeleton in skeletons {

@@ -1,7 +1,7 @@
 //! The search: least costs from generators, by buckets that are final when they are popped.
 
 use super::buckets::Buckets;
-use super::cells::{Cells, slot_mask};
+use super::cells::Cells;
 use super::front::{Front, MOST_BUCKETS, Wanted, Width};
 use super::shared;
 use super::tree::Plan;

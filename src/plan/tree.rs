@@ -71,14 +71,16 @@ impl<'g, G: Graph> Plan<'g, G> {
     }
 
     /// For each cell of `nodes`, what `start` gives for its generator, changed by `step` along every edge on the way
-    /// out; nodes that were not reached keep the default. Each edge is walked once or twice.
-    fn carry<T: Copy + Default>(
+    /// out; nodes that were not reached have `unreached`. Each edge is walked once or twice.
+    #[must_use]
+    pub fn carry<T: Copy>(
         &self,
         nodes: impl Iterator<Item = Node>,
+        unreached: T,
         start: impl Fn(Node) -> T,
         step: impl Fn(T, u32) -> T,
     ) -> Vec<T> {
-        let mut values = vec![T::default(); self.graph.cells()];
+        let mut values = vec![unreached; self.graph.cells()];
         let mut known = vec![false; self.graph.cells()];
         let mut way = Vec::new();
         for node in nodes.filter(|&node| self.is_reached(node)) {
@@ -106,12 +108,12 @@ impl<'g, G: Graph> Plan<'g, G> {
     /// The distance field: the least cost of each of `nodes` by cell, `None` where nothing was reached.
     #[must_use]
     pub fn costs(&self, nodes: impl Iterator<Item = Node>) -> Vec<Option<u64>> {
-        self.carry(nodes, |_| Some(0), |cost, weight| cost.map(|c| c + u64::from(weight)))
+        self.carry(nodes, None, |_| Some(0), |cost, weight| cost.map(|c| c + u64::from(weight)))
     }
 
     /// The nearest generator of each of `nodes` by cell (2007, section 3.4), `None` where nothing was reached.
     #[must_use]
     pub fn labels(&self, nodes: impl Iterator<Item = Node>) -> Vec<Option<Node>> {
-        self.carry(nodes, Some, |label, _| label)
+        self.carry(nodes, None, Some, |label, _| label)
     }
 }

@@ -1,6 +1,6 @@
 //! Lines of equal value on a grid of samples, by marching squares.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::math::DVec2;
 
@@ -10,42 +10,80 @@ use crate::math::DVec2;
 /// Where two opposite corners of a square are below 0, both are cut off on their own.
 #[must_use]
 pub fn contours(size: [u32; 2], value: impl Fn(u32, u32) -> f64) -> Vec<Vec<DVec2>> {
-    // Each segment leads from one crossing to the next; a crossing is named by its edge: the sample and the axis.
+    let inside = |x: u32, y: u32| {
+        let value = value(x, y);
+        (!value.is_nan()).then_some(value < 0.0)
+    };
+    trace(size, inside, |from, to| {
+        let (a, b) = (value(from[0], from[1]), value(to[0], to[1]));
+        place(from) + (place(to) - place(from)) * (a / (a - b))
+    })
+}
+
+/// The closed lines around the samples that are inside on a grid of `size` samples; all beyond it are outside. `crossing`
+/// tells how far the line is from a sample inside, as a share of the step to the neighbour along the axis that is outside, up
+/// (`true`) or down.
+#[must_use]
+pub fn rings(
+    size: [u32; 2],
+    is_inside: impl Fn(u32, u32) -> bool,
+    crossing: impl Fn([u32; 2], usize, bool) -> f64,
+) -> Vec<Vec<DVec2>> {
+    // One sample outside on each side: those of the grid begin at 1.
+    let inside = |x: u32, y: u32| {
+        let is_there = (1..=size[0]).contains(&x) && (1..=size[1]).contains(&y);
+        Some(is_there && is_inside(x - 1, y - 1))
+    };
+    let lines = trace(size.map(|s| s + 2), inside, |from, to| {
+        let axis = usize::from(from[0] == to[0]);
+        let share = crossing(from.map(|c| c - 1), axis, to[axis] > from[axis]).clamp(0.02, 0.98);
+        place(from) + (place(to) - place(from)) * share - 1.0
+    });
+    // The last point is the first.
+    lines.into_iter().map(|mut line| line.split_off(1)).collect()
+}
+
+fn place(at: [u32; 2]) -> DVec2 {
+    DVec2::new(at[0].into(), at[1].into())
+}
+
+/// The lines between samples inside and outside; `crossing` is where one passes between a sample inside and a neighbour
+/// outside.
+fn trace(
+    size: [u32; 2],
+    inside: impl Fn(u32, u32) -> Option<bool>,
+    crossing: impl Fn([u32; 2], [u32; 2]) -> DVec2,
+) -> Vec<Vec<DVec2>> {
+    // Each segment leads from one crossing to the next; a crossing is named by its edge: the lower sample and the axis.
     let mut next: HashMap<[u32; 3], [u32; 3]> = HashMap::new();
     let mut points: HashMap<[u32; 3], DVec2> = HashMap::new();
     let mut order = Vec::new();
     for y in 0..size[1].saturating_sub(1) {
         for x in 0..size[0].saturating_sub(1) {
             let corners = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]];
-            let values = corners.map(|[x, y]| value(x, y));
-            if values.iter().any(|v| v.is_nan()) {
-                continue;
-            }
-            let crossing = |i: usize| {
-                let (a, b) = (values[i % 4], values[(i + 1) % 4]);
-                let ([ax, ay], [bx, by]) = (corners[i % 4], corners[(i + 1) % 4]);
-                let (from, to) = (DVec2::new(ax.into(), ay.into()), DVec2::new(bx.into(), by.into()));
-                ([ax.min(bx), ay.min(by), u32::from(ax == bx)], from + (to - from) * (a / (a - b)))
+            let [Some(a), Some(b), Some(c), Some(d)] = corners.map(|[x, y]| inside(x, y)) else { continue };
+            let is_in = [a, b, c, d];
+            let mut cross = |i: usize, from: [u32; 2], to: [u32; 2]| {
+                let (a, b) = (corners[i % 4], corners[(i + 1) % 4]);
+                let name = [a[0].min(b[0]), a[1].min(b[1]), u32::from(a[0] == b[0])];
+                points.entry(name).or_insert_with(|| crossing(from, to));
+                name
             };
             for i in 0..4 {
-                if values[i] >= 0.0 && values[(i + 1) % 4] < 0.0 {
-                    let leaves = (1..4).find(|&j| values[(i + 1 + j) % 4] >= 0.0).unwrap_or(3);
-                    let ((from, p), (to, q)) = (crossing(i), crossing(i + leaves));
-                    points.insert(from, p);
-                    points.insert(to, q);
-                    // Counterclockwise around the corners, below 0 comes after `from`.
-                    next.insert(to, from);
-                    order.push(to);
+                if !is_in[i] && is_in[(i + 1) % 4] {
+                    let last = i + (1..4).find(|&j| !is_in[(i + 1 + j) % 4]).unwrap_or(3);
+                    let enters = cross(i, corners[(i + 1) % 4], corners[i]);
+                    let leaves = cross(last, corners[last % 4], corners[(last + 1) % 4]);
+                    // What is inside is on the left.
+                    next.insert(leaves, enters);
+                    order.push(leaves);
                 }
             }
         }
     }
-    let mut has_previous: HashMap<[u32; 3], bool> = HashMap::new();
-    next.values().for_each(|to| {
-        has_previous.insert(*to, true);
-    });
-    // Open lines from their beginnings, then closed ones from any of theirs.
-    let starts = order.iter().filter(|at| !has_previous.contains_key(*at)).chain(&order);
+    let reached: HashSet<[u32; 3]> = next.values().copied().collect();
+    // Open lines from their beginnings, then closed ones from any of their crossings.
+    let starts = order.iter().filter(|at| !reached.contains(*at)).chain(&order);
     let mut lines = Vec::new();
     for &start in starts {
         let mut line = Vec::new();
@@ -78,5 +116,20 @@ mod tests {
         // Cut by the border, it is open.
         let lines = contours([10, 21], value);
         assert!(lines.len() == 1 && lines[0][0] != lines[0][lines[0].len() - 1]);
+    }
+
+    #[test]
+    fn rings_run_around_what_is_inside() {
+        // Two squares that touch at a corner, and a hole.
+        let is_inside = |x: u32, y: u32| (x < 4 && y < 4 && (x, y) != (1, 1)) || (x >= 4 && y >= 4);
+        let rings = rings([6, 6], is_inside, |_, _, _| 0.5);
+        let area = |ring: &Vec<DVec2>| {
+            let after = ring.iter().cycle().skip(1);
+            ring.iter().zip(after).map(|(a, b)| a.perp_dot(*b) * 0.5).sum::<f64>()
+        };
+        let mut areas: Vec<f64> = rings.iter().map(area).collect();
+        areas.sort_by(f64::total_cmp);
+        // Half a square of the grid is cut off at each corner: an eighth.
+        assert_eq!(areas, [-0.5, 3.5, 15.5]);
     }
 }

@@ -9,7 +9,7 @@ mod panorama;
 mod plate;
 mod tone;
 
-pub use contour::contours;
+pub use contour::{contours, rings};
 pub use grey::Grey;
 pub use layers::{Channel, Layers};
 pub use panorama::Panorama;

@@ -4,13 +4,11 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
+use super::dress::dress;
 use super::{LightsSpec, Resolved, SceneError};
-use crate::grow::{Canopy, GrowError, Grown, Mark, MarkKind, Rounds, Space, Step};
-use crate::math::{Cancelled, Colour, DVec3, Progress, Stream};
-use crate::model::{
-    Camera, Ground, Instance, Light, Material, Model, Object, Projection, Skin, SkinError, Stroke, foot, shining,
-    to_world,
-};
+use crate::grow::{Canopy, GrowError, Grown, Mark, MarkKind, Regions, Rounds, Space, Step};
+use crate::math::{Cancelled, Colour, DVec3, Progress};
+use crate::model::{Camera, Ground, Light, Material, Model, Object, Projection, Skin, Stroke, shining, to_world};
 use crate::skeleton::{Part, Plant, Skeleton};
 
 /// The ground has faded into the horizon at this many times the camera's distance or the scene's size.
@@ -76,7 +74,14 @@ pub fn grow(scene: &Resolved, show: &[MarkKind], max_memory: u64, progress: &Pro
                 earlier.iter().copied().flatten().chain(growing.values().map(Rounds::skeleton)).collect();
             growing.values().map(|rounds| rounds.clumps().map(|clump| Canopy::new(&world, clump)).collect()).collect()
         };
-        let grow = |&i: &usize| scene.steps[i].grow(scene.seed, &earlier, show, progress);
+        let solids = |i: usize| grown[i].as_ref()?.regions.as_ref().map(Regions::solid);
+        let grow = |&i: &usize| {
+            let step = &scene.steps[i];
+            if step.solids().is_empty() {
+                return step.grow(scene.seed, &earlier, show, progress);
+            }
+            step.with_solids(&solids).grow(scene.seed, &earlier, show, progress)
+        };
         // Side by side where memory allows; the result is the same.
         let together: u64 = round.iter().map(|&i| scene.steps[i].bytes_needed()).sum();
         let finished: Result<Vec<Grown>, GrowError> = if together <= max_memory {
@@ -171,6 +176,7 @@ pub fn model(scene: &Resolved, grown: &[Grown], size: [u32; 2]) -> Result<Model,
     let mut objects = Vec::new();
     let mut strokes = Vec::new();
     let mut lights = scene.lights.clone();
+    let mut materials = scene.materials.clone();
     for plan in &scene.objects {
         let whole: Vec<_> = plan.steps.iter().map(|&step| &grown[step].skeleton).collect();
         let young: Vec<Skeleton>;
@@ -188,43 +194,11 @@ pub fn model(scene: &Resolved, grown: &[Grown], size: [u32; 2]) -> Result<Model,
             lights.extend(lights_along(&skeletons, plan.at, spec));
         }
         // What has not begun to grow, or shines alone, needs no skin.
-        if plan.mesh.is_none() && skeletons.iter().all(|s| s.nodes.is_empty()) && plan.until < 1.0 {
+        let is_solid = plan.skin == Skin::Surface;
+        if plan.mesh.is_none() && !is_solid && skeletons.iter().all(|s| s.nodes.is_empty()) && plan.until < 1.0 {
             continue;
         }
-        let object = match &plan.mesh {
-            Some(mesh) => Object::of_mesh(&plan.name, mesh, plan.at, plan.material),
-            None => plan.skin.dress(&plan.name, &skeletons, scene.is_flat, plan.at, plan.material),
-        };
-        let wrong = |error: SkinError| scene.error(&format!("object.{}", plan.name), error.to_string());
-        let object = object.map_err(wrong)?;
-        let (first, digits) = (object.instances[0].at, object.digits);
-        let mut parts = object.by_level();
-        for (part, level) in parts.iter_mut().zip(0..) {
-            let material = plan.level_materials.get(level).or(plan.level_materials.last());
-            part.material = material.copied().unwrap_or(plan.material);
-        }
-        for (name, spec, mesh, material) in &plan.leaves {
-            let stream = Stream::new(scene.seed, &format!("leaves/{}/{name}", plan.name));
-            let grown_foot = foot(&skeletons).unwrap_or(DVec3::ZERO);
-            let poses = spec.place(&skeletons, grown_foot, digits, &stream).map_err(wrong)?;
-            let name = format!("{}_{name}", plan.name);
-            if poses.is_empty() {
-                continue;
-            }
-            parts.push(if plan.skin == Skin::Mesh {
-                Object::of_mesh(&name, &mesh.at_poses(&poses).map_err(wrong)?, first, *material).map_err(wrong)?
-            } else {
-                Object::of_poses(&name, mesh, poses, first, digits, *material).map_err(wrong)?
-            });
-        }
-        for mut part in parts {
-            part.shadow = plan.shadow;
-            part.instances.extend(plan.copies.iter().map(|copy| Instance {
-                at: digits.round_point(first + to_world(copy.at - plan.at, scene.is_flat)),
-                ..*copy
-            }));
-            objects.push(part);
-        }
+        objects.extend(dress(scene, plan, grown, &skeletons, &mut materials)?);
     }
     // Marks move with the object that shows their step; steps that no object shows stay where they are.
     let mut marks = Vec::new();
@@ -246,18 +220,19 @@ pub fn model(scene: &Resolved, grown: &[Grown], size: [u32; 2]) -> Result<Model,
             projection: Projection::Parallel { width },
             aspect,
         };
-        return Ok(assemble(scene, objects, strokes, lights, marks, camera));
+        return Ok(assemble(scene, objects, materials, strokes, lights, marks, camera));
     }
     let balls = objects.iter().flat_map(Object::balls_in_world);
     let drawn = marks.iter().flat_map(|m| m.line.iter().map(|&p| (p, 0.0)));
     let camera =
         Camera::new(&scene.camera, aspect, balls.chain(drawn)).map_err(|message| scene.error("camera", message))?;
-    Ok(assemble(scene, objects, strokes, lights, marks, camera))
+    Ok(assemble(scene, objects, materials, strokes, lights, marks, camera))
 }
 
 fn assemble(
     scene: &Resolved,
     objects: Vec<Object>,
+    materials: Vec<(String, Material)>,
     strokes: Vec<Stroke>,
     lights: Vec<Light>,
     marks: Vec<Mark>,
@@ -267,7 +242,7 @@ fn assemble(
         title: scene.title.clone(),
         is_flat: scene.is_flat,
         objects,
-        materials: scene.materials.clone(),
+        materials,
         camera,
         lights,
         ground: None,

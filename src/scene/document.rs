@@ -9,8 +9,10 @@ use super::tree::Entry;
 use super::{Claim, Mistake, TrackSpec};
 use crate::geom::ShapeSpec;
 use crate::grow::{MarkKind, SpaceSpec, Step, StepSpec};
-use crate::math::{Colour, Degrees, Point, Ref};
-use crate::model::{CameraSpec, GlowSpec, GroundSpec, LeavesSpec, LightSpec, Material, Skin, SkySpec, ViewSpec};
+use crate::math::{Colour, DVec3, Degrees, Point, Ref};
+use crate::model::{
+    CameraSpec, GlowSpec, GroundSpec, LeavesSpec, LightSpec, Material, PaintSpec, Skin, SkySpec, ThornsSpec, ViewSpec,
+};
 
 /// A scene: named growth steps in named spaces, the objects that they become, and how these are seen.
 ///
@@ -103,6 +105,12 @@ pub struct ObjectSpec {
     /// Leaves, fruit and blossom along the ends of its limbs, by name.
     #[serde(default)]
     pub leaves: BTreeMap<String, LeavesSpec>,
+    /// Thorns on the surface of its limbs (cones and spheres).
+    #[serde(default)]
+    pub thorns: Option<ThornsSpec>,
+    /// Colours from a picture, for each of its trees or strands.
+    #[serde(default)]
+    pub paint: Option<PaintSpec>,
     /// How far it is moved from where it grew.
     #[serde(default)]
     pub at: Option<Point>,
@@ -122,6 +130,31 @@ pub struct ObjectSpec {
     /// Where else it stands: instances, which take next to no memory.
     #[serde(default)]
     pub copies: Vec<CopySpec>,
+    /// It is one patch of many alike, in rows and columns: instances too.
+    #[serde(default)]
+    pub tile: Option<TileSpec>,
+}
+
+/// Rows and columns of an object; the first is where it grew.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TileSpec {
+    /// How many along x, and along y (in a flat scene upwards).
+    #[schemars(inner(range(min = 1, max = 1000)))]
+    pub count: [u32; 2],
+    /// How far they are from each other along x and y, in scene units.
+    pub step: [f64; 2],
+}
+
+impl TileSpec {
+    /// How far each is moved, but for the first.
+    pub(super) fn places(&self) -> impl Iterator<Item = DVec3> + '_ {
+        let [columns, rows] = self.count;
+        (0..rows)
+            .flat_map(move |y| (0..columns).map(move |x| [x, y]))
+            .skip(1)
+            .map(|[x, y]| DVec3::new(f64::from(x) * self.step[0], f64::from(y) * self.step[1], 0.0))
+    }
 }
 
 /// A further place where an object stands.

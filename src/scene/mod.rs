@@ -6,6 +6,8 @@ mod animation;
 mod build;
 mod claim;
 mod document;
+mod dress;
+mod methods;
 mod mistake;
 mod repeat;
 mod resolve;

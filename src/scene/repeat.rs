@@ -176,8 +176,9 @@ impl Resolver<'_> {
 
     /// Widths of whole plants and their form belong together.
     pub(super) fn plant_width(&mut self, place: &str, spec: &StepSpec) {
-        self.plant_numbers(place, &spec.width, spec.repeat.as_ref().map_or(1, indices));
-        if spec.form.is_some() && spec.width.starts_plant() != Some(true) {
+        let Some(width) = &spec.width else { return };
+        self.plant_numbers(place, width, spec.repeat.as_ref().map_or(1, indices));
+        if spec.form.is_some() && width.starts_plant() != Some(true) {
             let message =
                 "`form` belongs where a plant starts: with a width by `length` or `pipe` that gives `root`".to_owned();
             self.wrong(&format!("{place}.form"), message);

@@ -3,20 +3,24 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::methods::Names;
 use super::tree::Entry;
 use super::{Claim, LightsSpec, Mistake, ObjectSpec, Scene, SceneError, Source};
 use crate::files::{
-    Folder, decode_grey, decode_mesh, decode_panorama, decode_plate, decode_sketch, leaf_names, resize_grey,
+    Folder, decode_grey, decode_linear, decode_mesh, decode_panorama, decode_plate, decode_sketch, leaf_names, resize_grey,
     resize_plate,
 };
 use crate::geom::{Shape, ShapeSpec};
-use crate::grow::{MarkKind, Space, SpaceSpec, Step};
+use crate::grow::{MarkKind, MethodSpec, Space, SpaceSpec, Step};
 use crate::math::{Colour, DVec2, DVec3, Degrees, Ref, unknown};
 use crate::model::{
-    CameraSpec, GlowSpec, GroundSpec, Instance, LeavesSpec, Light, LightSpec, Material, Mesh, Skin, Sky, SkySpec,
-    ViewFrame, ViewSpec, ball_mesh, leaf_mesh,
+    CameraSpec, GlowSpec, GroundSpec, Instance, LeavesSpec, Light, LightSpec, Material, Mesh, PaintSpec, Painting,
+    Skin, Sky, SkySpec, ThornsSpec, ViewFrame, ViewSpec, ball_mesh, leaf_mesh,
 };
 use crate::raster::{Grey, Plate};
+
+/// More places of a tile than this are refused.
+const MOST_TILES: u64 = 100_000;
 
 /// A scene whose names and files are resolved.
 #[derive(Clone, Debug)]
@@ -79,6 +83,10 @@ pub struct ObjectPlan {
     pub material: usize,
     /// Materials of its levels, where they differ; the last stays.
     pub level_materials: Vec<usize>,
+    /// What stands on its limbs.
+    pub thorns: Option<ThornsSpec>,
+    /// What colours its trees, in how many steps.
+    pub paint: Option<(Arc<Painting>, u32)>,
     /// What grows along its ends: its name, what it is, one of it, and its material.
     pub leaves: Vec<(String, LeavesSpec, Mesh, usize)>,
     /// How far it is moved, in scene space.
@@ -143,7 +151,7 @@ pub(super) fn resolve(
     let pixel = view.as_ref().map(|view| view.frame.pixel);
     let mut r = Resolver { scene: &scene, folder: &source.folder, tree, mistakes };
     for (name, spec) in &scene.shape {
-        let shape = spec.resolve(&scene.shape, r.folder);
+        let shape = spec.resolve(&scene.shape, &Names { folder: r.folder, scene: &scene });
         r.note(&format!("shape.{name}"), shape);
     }
     let is_flat = r.is_flat();
@@ -228,7 +236,8 @@ impl Resolver<'_> {
     }
 
     pub fn shape(&mut self, place: &str, spec: &ShapeSpec) -> Option<Shape> {
-        let shape = spec.resolve(&self.scene.shape, self.folder);
+        let names = Names { folder: self.folder, scene: self.scene };
+        let shape = spec.resolve(&self.scene.shape, &names);
         self.note(place, shape)
     }
 
@@ -331,10 +340,15 @@ impl Resolver<'_> {
             let message = "leaves and the skin `mesh` are for scenes in space".to_owned();
             self.wrong(&place, message);
         }
-        if spec.skin == Skin::Mesh && !spec.level_materials.is_empty() {
-            let message = "the skin `mesh` makes all levels one: it has one material".to_owned();
+        if matches!(spec.skin, Skin::Mesh | Skin::Isosurface(_)) && !spec.level_materials.is_empty() {
+            let message = "this skin makes all levels one: it has one material".to_owned();
             self.wrong(&format!("{place}.level_materials"), message);
         }
+        self.skin(&place, spec);
+        let paint = match &spec.paint {
+            Some(paint) => Some((self.painting(&format!("{place}.paint.file"), paint)?, paint.steps)),
+            None => None,
+        };
         let level_materials: Vec<_> = (0..)
             .zip(&spec.level_materials)
             .map(|(i, material): (usize, _)| {
@@ -363,17 +377,68 @@ impl Resolver<'_> {
             mesh: mesh?,
             skin: spec.skin,
             material,
+            thorns: spec.thorns,
+            paint,
             at: spec.at.map_or(DVec3::ZERO, |p| p.0),
             copies: spec
                 .copies
                 .iter()
                 .map(|copy| Instance { at: copy.at.0, turn: copy.turn.0, scale: copy.scale })
+                .chain(spec.tile.iter().flat_map(|tile| {
+                    tile.places().map(|by| Instance::at(spec.at.map_or(DVec3::ZERO, |p| p.0) + by)).collect::<Vec<_>>()
+                }))
                 .collect(),
             glow: spec.glow,
             until: spec.until,
             shadow: spec.shadow,
             lights: spec.lights,
         })
+    }
+
+    /// A skin, and what is on it, fit what the object is made of.
+    fn skin(&mut self, place: &str, spec: &ObjectSpec) {
+        let is_solid = |step: &Ref<Step>| {
+            self.scene.grow.get(&step.name).is_some_and(|step| matches!(step.by, MethodSpec::Regions(_)))
+        };
+        let solids = spec.grow.iter().filter(|step| is_solid(step)).count();
+        let is_surface = spec.skin == Skin::Surface;
+        if solids > 0 && !(is_surface && solids == spec.grow.len()) {
+            let message = "regions have no limbs: their objects have `skin = \"surface\"`, and no other steps".to_owned();
+            self.wrong(&format!("{place}.skin"), message);
+        } else if is_surface && solids == 0 {
+            let message = "the skin `surface` is that of regions: limbs have `cones`, `spheres`, `mesh` or `isosurface`";
+            self.wrong(&format!("{place}.skin"), message.to_owned());
+        }
+        let is_limbs = matches!(spec.skin, Skin::Cones | Skin::Spheres) && !spec.grow.is_empty();
+        let keys = [
+            ("thorns", spec.thorns.is_some(), spec.skin == Skin::Cones && !spec.grow.is_empty(), "limbs of cones"),
+            ("paint", spec.paint.is_some(), is_limbs, "limbs of cones or spheres"),
+            ("leaves", !spec.leaves.is_empty(), !is_surface, "limbs"),
+        ];
+        for (key, _, _, what) in keys.into_iter().filter(|(_, is_given, fits, _)| *is_given && !fits) {
+            self.wrong(&format!("{place}.{key}"), format!("`{key}` belongs to {what}"));
+        }
+        if spec.paint.is_some() && !spec.level_materials.is_empty() {
+            let message = "colours come either from a picture (`paint`) or by level".to_owned();
+            self.wrong(&format!("{place}.paint"), message);
+        }
+        if let Some(tile) = &spec.tile {
+            let places = u64::from(tile.count[0]) * u64::from(tile.count[1]);
+            let is_apart = (0..2).all(|axis| tile.count[axis] == 1 || tile.step[axis].abs() > 0.0);
+            if places > MOST_TILES || !is_apart {
+                let message = format!("a tile has {MOST_TILES} places at most, apart from each other");
+                self.wrong(&format!("{place}.tile"), message);
+            }
+        }
+    }
+
+    fn painting(&mut self, place: &str, spec: &PaintSpec) -> Option<Arc<Painting>> {
+        let file = &spec.file;
+        let wrong = |error: String| format!("cannot read `{file}`: {error}");
+        let picture = self.folder.read(file).and_then(|bytes| decode_linear(&bytes).map_err(wrong));
+        let picture = self.note(place, picture)?;
+        let pixels = picture.pixels(["R", "G", "B"])?;
+        Some(Arc::new(Painting { size: [picture.width, picture.height], pixels }))
     }
 
     fn sky(&mut self, spec: &SkySpec) -> Option<Sky> {

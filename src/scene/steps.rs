@@ -3,19 +3,18 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::methods::is_first;
 use super::resolve::Resolver;
 use crate::files::{decode_grey, decode_sketch};
 use crate::geom::{Bounds, Shape, Strokes};
 use crate::graph::{CostField, FieldSpec, FieldUse, HeightEnd, Joining, Measure, MeasureSpec, Sectors};
 use crate::grow::{
-    Clusters, EndpointSpec, Endpoints, FromSpec, LatticeSpace, LatticeSpec, Method, MethodSpec, Near, NearSpec,
-    NodesSpec, Part, Placement, SIDE, ScatterSpace, ScatterSpec, Source as Generators, Space, SpaceSpec, Step,
-    StepSpec,
+    Clusters, EndpointSpec, Endpoints, FromSpec, LatticeSpace, LatticeSpec, Near, NearSpec, NodesSpec, Part,
+    Placement, ScatterSpace, ScatterSpec, Source as Generators, Space, SpaceSpec, Step, StepSpec,
 };
 use crate::math::{DVec2, DVec3, PerRound, Point};
+use crate::skeleton::Width;
 
-/// The dielectric breakdown model solves for all nodes again and again: more would take days.
-const MOST_DBM: u64 = 4 << 20;
 /// More edges than this are refused.
 const MOST_EDGES: f64 = 2e9;
 /// More scattered nodes than this are refused.
@@ -210,12 +209,10 @@ impl Resolver<'_> {
         let mut classes: Vec<String> = spec.to.values().map(|set| set.class.clone()).collect();
         classes.sort();
         classes.dedup();
-        if spec.to.is_empty() {
-            self.wrong(&format!("{place}.to"), "a step needs at least one set of endpoints, `to.NAME`".to_owned());
-        }
         let source = match &spec.from {
             FromSpec::At(points) => Some(Generators::At(points.iter().map(|p| p.0).collect())),
             FromSpec::Inside(shape) => self.shape(&format!("{place}.from.inside"), shape).map(Generators::Inside),
+            FromSpec::Spread(spread) => self.spread(&place, name, spread, spec),
             FromSpec::All(step) => self
                 .find(&format!("{place}.from.all"), "step", step, self.scene.grow.keys())
                 .map(|step| Generators::Steps(vec![step], Part::All)),
@@ -232,30 +229,12 @@ impl Resolver<'_> {
                 found.into_iter().collect::<Option<_>>().map(|steps| Generators::Steps(steps, Part::EveryEnd))
             }
         };
-        if spec.along > 0.0 && (matches!(spec.from, FromSpec::At(_) | FromSpec::Inside(_)) || spec.repeat.is_some()) {
+        if spec.along > 0.0 && (is_first(&spec.from) || spec.repeat.is_some()) {
             let message =
                 "`along` is about the step that this one grows from: it needs `from.all` or `from.ends`, and no `repeat`".to_owned();
             self.wrong(&format!("{place}.along"), message);
         }
-        let method = match spec.by {
-            MethodSpec::Paths => Method::Paths,
-            MethodSpec::Dbm(dbm) => {
-                let lattice = space.as_ref().and_then(Space::lattice);
-                if space.is_some() && (lattice.is_none() || spec.repeat.is_some()) {
-                    let message = "the dielectric breakdown model grows once, on a lattice".to_owned();
-                    self.wrong(&format!("{place}.by"), message);
-                }
-                if lattice.is_some_and(|space| space.window.nodes() > MOST_DBM) {
-                    let message =
-                        format!("the dielectric breakdown model takes {MOST_DBM} nodes at most: use a wider spacing");
-                    self.wrong(&format!("{place}.space"), message);
-                }
-                classes.push(SIDE.to_owned());
-                classes.sort();
-                classes.dedup();
-                Method::Dbm(dbm)
-            }
-        };
+        let method = self.method(&place, spec, space.as_ref(), &mut classes);
         let refine = match &spec.refine {
             Some(refine) => {
                 let Some(lattice) = space.as_ref()?.lattice() else {
@@ -268,7 +247,9 @@ impl Resolver<'_> {
             }
             None => None,
         };
-        let widths = spec.width.check(&classes);
+        // Regions have none.
+        let width = spec.width.clone().unwrap_or(Width::Constant(0.0));
+        let widths = width.check(&classes);
         self.note(&format!("{place}.width"), widths);
         let repeat = match &spec.repeat {
             Some(repeat) => Some(self.repeat(&place, repeat, spec, space.as_ref())?),
@@ -286,7 +267,7 @@ impl Resolver<'_> {
                 placement.map(|placement| Endpoints { name: key.clone(), class, placement })
             })
             .collect();
-        Some(Step {
+        let step = Step {
             name: name.to_owned(),
             space: space?,
             space_name: spec.space.name.clone(),
@@ -297,11 +278,18 @@ impl Resolver<'_> {
             along: spec.along,
             refine,
             repeat,
-            width: spec.width.clone(),
+            width,
+            strands: spec.strands,
+            symmetry: spec.symmetry,
             form: spec.form,
             smooth: spec.smooth,
             unreached: spec.unreached,
-        })
+        };
+        if step.repeat.is_some() && !step.solids().is_empty() {
+            let message = "a repeated step cannot depend on what another step grew as a solid".to_owned();
+            self.wrong(&format!("{place}.repeat"), message);
+        }
+        Some(step)
     }
 
     /// `rounds` are those of a repeated step.
@@ -331,8 +319,8 @@ impl Resolver<'_> {
             self.wrong(place, message.to_owned());
             return None;
         }
-        match (&spec.count, &spec.at, &spec.sketch, &spec.through) {
-            (Some(count), None, None, None) => {
+        match (&spec.count, &spec.at, &spec.sketch, &spec.through, &spec.grammar) {
+            (Some(count), None, None, None, None) => {
                 self.count(&format!("{place}.count"), count, rounds)?;
                 let stream = spec.stream.clone().unwrap_or_else(|| own.to_owned());
                 let inside = match &spec.inside {
@@ -349,13 +337,13 @@ impl Resolver<'_> {
                 let (count, apart, shell) = (count.clone(), spec.apart, spec.shell);
                 Some(Placement::Random { count, inside, apart, shell, stream })
             }
-            (None, Some(points), None, None) => {
+            (None, Some(points), None, None, None) => {
                 if points.is_empty() {
                     self.wrong(&format!("{place}.at"), "list at least one endpoint".to_owned());
                 }
                 Some(Placement::At(points.iter().map(|p| p.0).collect()))
             }
-            (None, None, None, Some(lists)) => {
+            (None, None, None, Some(lists), None) => {
                 if lists.is_empty() || lists.iter().any(Vec::is_empty) {
                     self.wrong(&format!("{place}.through"), "list at least one point for each path".to_owned());
                 }
@@ -365,7 +353,11 @@ impl Resolver<'_> {
                 }
                 Some(Placement::Through(lists.iter().map(|list| list.iter().map(|p| p.0).collect()).collect()))
             }
-            (None, None, Some(file), None) => {
+            (None, None, None, None, Some(grammar)) => {
+                let ends = grammar.endpoints(space?.up() == 1);
+                self.note(&format!("{place}.grammar"), ends).map(Placement::At)
+            }
+            (None, None, Some(file), None, None) => {
                 let space = space?;
                 let frame = space.shape().bounds();
                 let (_, points) = self.sketch(&format!("{place}.sketch"), file, frame, space.up())?;
@@ -373,7 +365,7 @@ impl Resolver<'_> {
                 Some(Placement::At(points.into_iter().map(raise).collect()))
             }
             _ => {
-                let message = "endpoints need exactly one of `count` (at random), `at` (a list), `through` (lists) and `sketch` (an SVG file)";
+                let message = "endpoints need exactly one of `count` (at random), `at` (a list), `through` (lists), `sketch` (an SVG file) and `grammar` (an L-system)";
                 self.wrong(place, message.to_owned());
                 None
             }

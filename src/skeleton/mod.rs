@@ -13,6 +13,8 @@ mod plant;
 mod relate;
 mod smooth;
 mod spline;
+mod strands;
+mod symmetry;
 mod width;
 
 pub use build::{Path, Skeleton, SkeletonNode};
@@ -25,3 +27,4 @@ pub use relate::{apart, crossings, floating, shared_ends};
 pub use smooth::smooth;
 pub use spline::{bend, overlap};
 pub use width::{ByLength, PerClass, Pipe, Taper, Width};
+pub use symmetry::SymmetrySpec;

@@ -1,0 +1,305 @@
+//! Regions: which generator is nearest to each node (Xu and Mould 2007, section 3.4): rocks, cracked ground, cells.
+
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{GrowError, LatticeSpace, Step};
+use crate::geom::{Shape, Surface, Voxels, fill};
+use crate::graph::{Graph, Lattice, Mask, Node, Window};
+use crate::math::{DVec2, Point, Progress};
+use crate::plan::{Goal, plan, plan_delayed};
+use crate::raster::rings;
+
+/// Regions, one for each generator: all that is nearest to it.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct RegionsSpec {
+    /// Only the regions that these points lie in; by default all.
+    pub keep: Vec<Point>,
+    /// Width of the gap between regions, in scene units: surfaces are drawn in by half of it.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub gap: f64,
+    /// Plan the border again this many times, each on a lattice twice as fine around it (section 3.1).
+    #[schemars(range(min = 0, max = 3))]
+    pub refine: u32,
+    /// How often surfaces in space are smoothed: 0 shows the steps of the lattice, 2 leaves edges, 10 pebbles.
+    #[schemars(range(min = 0, max = 100))]
+    pub smooth: u32,
+}
+
+/// What a step by regions yields.
+#[derive(Clone, Debug)]
+pub struct Regions {
+    /// The border of each region that is kept, in scene units: closed, seen from outside; in the plane its inside.
+    pub surfaces: Vec<Surface>,
+    window: Window,
+    is_inside: Vec<bool>,
+}
+
+impl Regions {
+    /// All of them as one solid.
+    #[must_use]
+    pub fn solid(&self) -> Arc<Voxels> {
+        let low = self.window.position([0; 3]);
+        Arc::new(Voxels::new(self.window.size, self.window.spacing, low, &self.is_inside))
+    }
+}
+
+/// No region.
+const NONE: u16 = u16::MAX;
+
+/// The nodes of a lattice with the region of each and its cost.
+struct Labelled<'a, const N: usize> {
+    lattice: Cow<'a, Lattice<N>>,
+    shape: &'a Shape,
+    nodes: Vec<(u16, u32)>,
+}
+
+impl<const N: usize> Labelled<'_, N> {
+    fn cell(&self, [x, y, z]: [u32; 3]) -> usize {
+        let [nx, ny, _] = self.lattice.window().size;
+        x as usize + nx as usize * (y as usize + ny as usize * z as usize)
+    }
+
+    /// How far the border of the region of the node at `at` is on the way to the next along an axis: where both ways cost the same,
+    /// or on the surface of the space.
+    fn crossing(&self, at: [u32; 3], axis: usize, up: bool) -> f64 {
+        let window = self.lattice.window();
+        let mut other = at;
+        other[axis] = other[axis].wrapping_add_signed(if up { 1 } else { -1 });
+        let is_within = other[axis] < window.size[axis];
+        if is_within && self.nodes[self.cell(other)].0 != NONE {
+            let slot = 2 * axis as u32 + u32::from(!up);
+            let weight = f64::from(self.lattice.follow(self.lattice.node(at), slot).1);
+            let [here, there] = [at, other].map(|at| f64::from(self.nodes[self.cell(at)].1));
+            return (there - here + weight) / (2.0 * weight);
+        }
+        let p = window.position(at);
+        let mut q = p;
+        q[axis] += if up { window.spacing } else { -window.spacing };
+        let (a, b) = (self.shape.distance(p), self.shape.distance(q));
+        if a <= 0.0 && b > 0.0 { a / (a - b) } else { 0.5 }
+    }
+
+    /// The border of a region.
+    fn surface(&self, region: u16, spec: &RegionsSpec) -> Surface {
+        let window = self.lattice.window();
+        let is_in = |at: [u32; 3]| self.nodes[self.cell(at)].0 == region;
+        let spacing = window.spacing;
+        if self.lattice.is_plane() {
+            let place = |p: DVec2| (window.position([0; 3]).truncate() + p * spacing).extend(0.0);
+            let size = [window.size[0], window.size[1]];
+            let rings = rings(size, |x, y| is_in([x, y, 0]), |[x, y], axis, up| self.crossing([x, y, 0], axis, up));
+            return fill(&rings.iter().map(|ring| drawn_in(ring, spec.gap * 0.5 / spacing)).collect::<Vec<_>>())
+                .map(|p| place(p.truncate()));
+        }
+        // Only the part of the window that it takes up.
+        let [low, high] = self.box_of(region);
+        let size = [0, 1, 2].map(|axis| high[axis] + 1 - low[axis]);
+        let at = |at: [u32; 3]| [0, 1, 2].map(|axis| at[axis] + low[axis]);
+        let mut surface = Surface::extract(size, |p| is_in(at(p)), |p, axis, up| self.crossing(at(p), axis, up))
+            .map(|p| window.position(low) + p * spacing);
+        surface.smooth(spec.smooth);
+        if spec.gap > 0.0 {
+            let normals = surface.normals();
+            surface.points.iter_mut().zip(normals).for_each(|(p, n)| *p -= n * (spec.gap * 0.5));
+        }
+        surface
+    }
+
+    /// Those of `kept`, side by side.
+    fn regions(&self, kept: &[u16], spec: &RegionsSpec) -> Regions {
+        let mut is_kept = vec![false; usize::from(NONE) + 1];
+        kept.iter().for_each(|&region| is_kept[usize::from(region)] = true);
+        let surfaces: Vec<Surface> = kept.par_iter().map(|&region| self.surface(region, spec)).collect();
+        Regions {
+            // Other generators may have taken all of one's nodes.
+            surfaces: surfaces.into_iter().filter(|surface| !surface.triangles.is_empty()).collect(),
+            window: *self.lattice.window(),
+            is_inside: self.nodes.iter().map(|&(region, _)| is_kept[usize::from(region)]).collect(),
+        }
+    }
+
+    fn box_of(&self, region: u16) -> [[u32; 3]; 2] {
+        let size = self.lattice.window().size;
+        let (mut low, mut high) = (size, [0; 3]);
+        let mut i = 0;
+        for z in 0..size[2] {
+            for y in 0..size[1] {
+                for x in 0..size[0] {
+                    if self.nodes[i].0 == region {
+                        low = [low[0].min(x), low[1].min(y), low[2].min(z)];
+                        high = [high[0].max(x), high[1].max(y), high[2].max(z)];
+                    }
+                    i += 1;
+                }
+            }
+        }
+        [low, high]
+    }
+}
+
+/// A ring moved inwards (to its left) by `by`.
+fn drawn_in(ring: &[DVec2], by: f64) -> Vec<DVec2> {
+    let n = ring.len();
+    (0..n)
+        .map(|i| {
+            let along = ring[(i + 1) % n] - ring[(i + n - 1) % n];
+            ring[i] + along.perp().normalize_or_zero() * by
+        })
+        .collect()
+}
+
+impl Step {
+    /// Labels every node with its nearest generator and takes the borders of the regions that are kept; how many nodes were
+    /// settled.
+    pub(super) fn grow_regions<const N: usize>(
+        &self,
+        spec: &RegionsSpec,
+        space: &LatticeSpace,
+        lattice: &Lattice<N>,
+        generators: &[Node],
+        seed: u64,
+        progress: &Progress,
+    ) -> Result<(Regions, u64), GrowError> {
+        let wrong = |key: &str, message: String| GrowError::Scene { place: format!("grow.{}.{key}", self.name), message };
+        if generators.len() >= usize::from(NONE) {
+            return Err(wrong("from", format!("{} generators are too many: {} at most", generators.len(), NONE - 1)));
+        }
+        let found = plan(lattice, generators, Goal::Everything, progress).map_err(|error| self.plan_error(error))?;
+        let settled = found.settled() as u64;
+        let numbers: HashMap<Node, u16> = generators.iter().copied().zip(0..).collect();
+        let nodes = found.carry(
+            lattice.nodes(),
+            (NONE, 0),
+            |generator| (numbers[&generator], 0),
+            |(region, cost): (u16, u32), weight| (region, cost.saturating_add(weight)),
+        );
+        let mut labelled = Labelled { lattice: Cow::Borrowed(lattice), shape: &space.shape, nodes };
+        let mut kept: Vec<u16> = (0..generators.len() as u16).collect();
+        if !spec.keep.is_empty() {
+            kept.clear();
+            for (i, Point(p)) in spec.keep.iter().enumerate() {
+                let region = lattice.nearest_within(*p).map_or(NONE, |node| labelled.nodes[lattice.cell(node)].0);
+                if region == NONE {
+                    let message = format!("{p} lies in no region: it is outside of the space, or nothing reaches it");
+                    return Err(wrong(&format!("by.regions.keep.{i}"), message));
+                }
+                if !kept.contains(&region) {
+                    kept.push(region);
+                }
+            }
+        }
+        for level in 0..spec.refine {
+            progress.report("refine", f64::from(level) / f64::from(spec.refine))?;
+            labelled = self.finer(&labelled, space, seed, level, progress)?;
+        }
+        Ok((labelled.regions(&kept, spec), settled))
+    }
+
+    /// The regions on a lattice twice as fine, planned again around their borders; elsewhere they stay.
+    fn finer<'a, const N: usize>(
+        &self,
+        coarse: &Labelled<'_, N>,
+        space: &'a LatticeSpace,
+        seed: u64,
+        level: u32,
+        progress: &Progress,
+    ) -> Result<Labelled<'a, N>, GrowError> {
+        let wide = coarse.lattice.window();
+        let size = wide.size.map(|s| s * 2 - 1);
+        let bits: u32 = size.iter().map(|&s| 32 - (s - 1).leading_zeros()).sum();
+        if bits > 32 || size.iter().map(|&s| u64::from(s)).product::<u64>() > MOST_FINE {
+            let message = format!("a lattice of {size:?} nodes is too large: refine less, or use a wider spacing");
+            return Err(GrowError::Scene { place: format!("grow.{}.by.regions.refine", self.name), message });
+        }
+        let window = Window { spacing: wide.spacing * 0.5, origin: wide.origin.map(|c| c * 2), size };
+        // Coarse nodes next to another region, or to nothing; and those next to these.
+        let is_border = around(wide.size, |cell, other| coarse.nodes[cell].0 != coarse.nodes[other].0, true);
+        let is_near = around(wide.size, |_, other| is_border[other], false);
+        let corners = |at: [u32; 3]| {
+            (0..8_u32).map(move |corner| [0, 1, 2].map(|axis| (at[axis] + (corner >> axis & 1)) / 2))
+        };
+        let at = |cell: u64| {
+            let [x, y, _] = size.map(u64::from);
+            [cell % x, cell / x % y, cell / (x * y)].map(|c| c as u32)
+        };
+        let cells = size.iter().map(|&s| u64::from(s)).product::<u64>();
+        let is_open = |cell: u64| {
+            let at = at(cell);
+            corners(at).any(|c| is_near[coarse.cell(c)]) && space.is_open(window.position(at))
+        };
+        let words = (0..cells.div_ceil(64))
+            .into_par_iter()
+            .map(|word| {
+                let blocked = |bit: u64| word * 64 + bit < cells && !is_open(word * 64 + bit);
+                (0..64).fold(0, |bits, bit| bits | u64::from(blocked(bit)) << bit)
+            })
+            .collect();
+        let mask = Mask::from_words(words, cells as usize);
+        let stream = format!("{}/refine/{level}", space.stream);
+        let lattice: Lattice<N> = space.lattice_in(window, &stream, seed, Some(mask)).map_err(|error| {
+            GrowError::Scene { place: format!("space.{}.weights", self.space_name), message: error.to_string() }
+        })?;
+        // Sure coarse nodes start it, with what they cost: a coarse step is two fine ones.
+        let fractions = [coarse.lattice.weight_range().fraction, lattice.weight_range().fraction];
+        let doubled = |cost: u32| (u64::from(cost) << (1 + fractions[1])) >> fractions[0];
+        let sure = |node: Node| {
+            let at = lattice.coordinates(node);
+            let cell = coarse.cell(at.map(|c| c / 2));
+            (at.iter().all(|c| c % 2 == 0) && !is_border[cell] && coarse.nodes[cell].0 != NONE).then_some(cell)
+        };
+        let later: Vec<(Node, u64)> =
+            lattice.nodes().filter_map(|node| Some((node, doubled(coarse.nodes[sure(node)?].1)))).collect();
+        let found = plan_delayed(&lattice, &[], &later, Goal::Everything, progress)
+            .map_err(|error| self.plan_error(error))?;
+        let mut nodes = found.carry(
+            lattice.nodes(),
+            (NONE, 0),
+            |node| sure(node).map_or((NONE, 0), |cell| (coarse.nodes[cell].0, doubled(coarse.nodes[cell].1) as u32)),
+            |(region, cost): (u16, u32), weight| (region, cost.saturating_add(weight)),
+        );
+        drop(found);
+        nodes.par_iter_mut().enumerate().for_each(|(cell, node)| {
+            let at = at(cell as u64);
+            if !corners(at).any(|c| is_near[coarse.cell(c)]) {
+                let (region, cost) = coarse.nodes[coarse.cell(at.map(|c| c / 2))];
+                *node = (region, doubled(cost) as u32);
+            }
+        });
+        Ok(Labelled { lattice: Cow::Owned(lattice), shape: &space.shape, nodes })
+    }
+}
+
+/// More nodes than this of a refined lattice are refused.
+const MOST_FINE: u64 = 1 << 28;
+
+/// For each cell of a window: does `test` hold with any of the cells around it? `beyond` is what holds at its border.
+fn around(size: [u32; 3], test: impl Fn(usize, usize) -> bool + Sync, beyond: bool) -> Vec<bool> {
+    let [nx, ny, nz] = size.map(i64::from);
+    let is_flat = nz == 1;
+    (0..nx * ny * nz)
+        .into_par_iter()
+        .map(|cell| {
+            let (x, y, z) = (cell % nx, cell / nx % ny, cell / (nx * ny));
+            let edge = x == 0 || y == 0 || x + 1 == nx || y + 1 == ny || (!is_flat && (z == 0 || z + 1 == nz));
+            if edge && beyond {
+                return true;
+            }
+            (-1..=1).any(|dz| {
+                (-1..=1).any(|dy| {
+                    (-1..=1).any(|dx| {
+                        let (x, y, z) = (x + dx, y + dy, z + dz);
+                        let is_there = (0..nx).contains(&x) && (0..ny).contains(&y) && (0..nz).contains(&z);
+                        is_there && test(cell as usize, (x + nx * (y + ny * z)) as usize)
+                    })
+                })
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,79 @@
+//! Paint: strands take their colour from a picture that lies under them (Xu and Mould 2007, Fig. 15).
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::Object;
+use crate::geom::Bounds;
+use crate::math::{Colour, DVec3, from_srgb, to_srgb};
+
+/// Every tree or strand of an object has the colour of a picture where it starts. The picture is stretched over all their
+/// starts, seen from above; in a flat scene from the front.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PaintSpec {
+    /// The picture, beside the scene: PNG or JPEG.
+    pub file: String,
+    /// Steps of each of red, green and blue: so many objects are the most that come of it, cubed.
+    #[serde(default = "steps")]
+    #[schemars(range(min = 2, max = 16))]
+    pub steps: u32,
+}
+
+fn steps() -> u32 {
+    6
+}
+
+/// A picture to paint with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Painting {
+    /// Pixels in a row, and rows.
+    pub size: [u32; 2],
+    /// Red, green and blue in linear light, row by row from the top.
+    pub pixels: Vec<[f32; 3]>,
+}
+
+impl Object {
+    /// This object as one for each colour that `picture` has, in `steps` of each channel, where
+    /// its trees start.
+    #[must_use]
+    pub fn painted(self, picture: &Painting, steps: u32, is_flat: bool) -> Vec<(Self, Colour)> {
+        let mut is_root = vec![true; self.balls.len()];
+        self.segments.iter().for_each(|&[_, b]| is_root[b as usize] = false);
+        let roots = (0..self.balls.len()).filter(|&i| is_root[i]);
+        let point = |i: usize| DVec3::new(self.balls[i].centre.x, self.balls[i].centre[if is_flat { 2 } else { 1 }], 0.0);
+        let bounds = roots.fold(Bounds::EMPTY, |b, i| b.union(Bounds { min: point(i), max: point(i) }));
+        let size = bounds.size().max(DVec3::splat(1e-9));
+        let [width, height] = picture.size;
+        let step = |i: usize| -> [u8; 3] {
+            let at = (point(i) - bounds.min) / size;
+            let pixel = |share: f64, n: u32| ((share * f64::from(n)) as u32).min(n - 1) as usize;
+            let cell = pixel(at.x, width) + pixel(1.0 - at.y, height) * width as usize;
+            // As bright as it is seen.
+            picture.pixels[cell].map(|value| libm::round(to_srgb(f64::from(value)) * f64::from(steps - 1)) as u8)
+        };
+        // Parents come before children.
+        let mut colours: Vec<[u8; 3]> = (0..self.balls.len()).map(|i| if is_root[i] { step(i) } else { [0; 3] }).collect();
+        self.segments.iter().for_each(|&[a, b]| colours[b as usize] = colours[a as usize]);
+        let mut parts: BTreeMap<[u8; 3], Self> = BTreeMap::new();
+        let mut renamed = vec![0; self.balls.len()];
+        let empty = Self { balls: Vec::new(), segments: Vec::new(), ..self.clone() };
+        for (i, ball) in self.balls.iter().enumerate() {
+            let part = parts.entry(colours[i]).or_insert_with(|| empty.clone());
+            renamed[i] = part.balls.len() as u32;
+            part.balls.push(*ball);
+        }
+        for &[a, b] in &self.segments {
+            if let Some(part) = parts.get_mut(&colours[a as usize]) {
+                part.segments.push([renamed[a as usize], renamed[b as usize]]);
+            }
+        }
+        let colour = |step: [u8; 3]| Colour(step.map(|c| from_srgb(f64::from(c) / f64::from(steps - 1))));
+        (1..)
+            .zip(parts)
+            .map(|(i, (step, part)): (u32, _)| (Self { name: format!("{}_{i}", self.name), ..part }, colour(step)))
+            .collect()
+    }
+}
