@@ -146,10 +146,19 @@ pub struct ExportArgs {
     /// Draw marks of the construction too (svg)
     #[arg(long, value_enum, value_delimiter = ',', value_name = "MARKS")]
     pub show: Vec<Show>,
-    /// Fill in the templates in this folder in place of the program's own (pov)
+    /// How the scene has its shadows (rib); none by default
+    #[arg(long, value_enum)]
+    pub shadows: Option<Shadows>,
+    /// Leave thorns to a displacement shader, thorns.sl, which is written too and must be compiled (rib)
+    #[arg(long)]
+    pub displace: bool,
+    /// Compress the archive of the objects, which RIB renderers read as it is (rib)
+    #[arg(long)]
+    pub gzip: bool,
+    /// Fill in the templates in this folder in place of the program's own (pov, rib)
     #[arg(long, value_name = "DIR")]
     pub templates: Option<PathBuf>,
-    /// Write over a .pov or .ini that was edited
+    /// Write over a .pov, .ini or .rib that was edited
     #[arg(long)]
     pub force: bool,
     /// Leave out exports that are there already
@@ -352,12 +361,28 @@ pub struct CompletionsArgs {
 pub enum Renderer {
     /// POV-Ray 3.7, which must be installed
     Povray,
+    /// Pixie (`rndr`), which must be installed
+    Pixie,
+    /// Aqsis (`aqsis`), which must be installed
+    Aqsis,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Shadows {
+    /// No shadows: what every renderer takes
+    None,
+    /// Traced by the light `raydistant`, which Pixie has
+    Rays,
+    /// Maps that the scene makes first, read by the light `shadowdistant`, which Aqsis has
+    Maps,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
     /// POV-Ray: NAME.inc, and NAME.pov with NAME.ini to show it off
     Pov,
+    /// RenderMan: NAME.rib, and NAME.archive.rib with the objects
+    Rib,
     /// A schematic: NAME.svg
     Svg,
     /// A mesh for other programs, y up: NAME.obj (objects with `skin = "mesh"`)
@@ -371,6 +396,7 @@ impl Format {
     pub fn ending(self) -> &'static str {
         match self {
             Self::Pov => "inc",
+            Self::Rib => "rib",
             Self::Svg => "svg",
             Self::Obj => "obj",
             Self::Ply => "ply",

@@ -3,7 +3,7 @@
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource, Report};
 
 use super::console::Console;
-use crate::render::PovrayError;
+use crate::render::{PovrayError, RibError};
 use crate::scene::{SceneError, Stage};
 
 /// Why the command did not do what was asked.
@@ -116,6 +116,15 @@ impl From<PovrayError> for Failure {
     fn from(error: PovrayError) -> Self {
         match error {
             PovrayError::Cancelled(_) => Self::Stopped,
+            error => Self::Outside(error.to_string()),
+        }
+    }
+}
+
+impl From<RibError> for Failure {
+    fn from(error: RibError) -> Self {
+        match error {
+            RibError::Cancelled(_) => Self::Stopped,
             error => Self::Outside(error.to_string()),
         }
     }

@@ -21,6 +21,7 @@ mod shone;
 mod strike;
 mod terminal;
 mod watch;
+mod write;
 
 use std::process::ExitCode;
 

@@ -4,21 +4,22 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::args::{Look, RenderArgs, Show};
+use super::args::{Look, RenderArgs, Renderer, Show};
 use super::compare::to_screen;
 use super::console::Console;
 use super::error::Failure;
-use super::export::{read_templates, write_pov};
 use super::jobs::{Job, Jobs};
 use super::preview::{Drawn, is_exr, samples, trace, view};
 use super::sheet::{Tile, write_sheet};
 use super::shone::Shone;
+use super::write::{read_templates, write_pov, write_rib};
 use super::{terminal, watch};
-use crate::export::{Pov, SvgOptions, identifier, write_svg};
+use crate::export::{Origin, Pov, Rib, RibOptions, RibShadows, SvgOptions, Templates, identifier, write_svg};
 use crate::files::{Rgba, decode_exr, decode_png, draw_svg};
+use crate::model::Model;
 use crate::grow::MarkKind;
 use crate::math::Progress;
-use crate::render::Povray;
+use crate::render::{Povray, RibRenderer};
 use crate::scene::Resolved;
 
 pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Result<(), Failure> {
@@ -147,15 +148,26 @@ pub fn draw(
     // What is wrong with the call is said before long work.
     let view = view(args, scene.size, data, jobs.max_memory())?;
     let model = jobs.model(scene, &[], console, progress)?;
-    if args.with.is_none() {
-        return trace(&model, &view, progress);
-    }
+    let Some(with) = args.with else { return trace(&model, &view, progress) };
     let templates = read_templates(args.templates.as_deref())?;
     let folder = tempfile::Builder::new()
         .prefix("lichtenberg-")
         .tempdir()
-        .map_err(|e| Failure::Usage(format!("cannot make a folder for povray's files: {e}")))?;
+        .map_err(|e| Failure::Usage(format!("cannot make a folder for the renderer's files: {e}")))?;
     let name = "scene";
+    let renderer = match with {
+        Renderer::Povray => None,
+        Renderer::Pixie => Some(RibRenderer::Pixie),
+        Renderer::Aqsis => Some(RibRenderer::Aqsis),
+    };
+    if let Some(renderer) = renderer {
+        if args.look == Look::Studio {
+            console.note("note: RIB shows the exact look; the studio look is the preview's and POV-Ray's");
+        }
+        let origin = job.origin(scene.seed, "render");
+        let picture = render_rib(renderer, &model, &templates, folder.path(), scene.size, &origin, progress)?;
+        return Ok(Drawn::Screen(cut(&picture, view.crop)));
+    }
     let pov = Pov::new(&model, &templates, name, scene.size, &job.origin(scene.seed, "render"));
     write_pov(&pov, folder.path(), name, true)?;
     let povray = Povray {
@@ -174,6 +186,32 @@ pub fn draw(
     let picture =
         decode_png(&picture).map_err(|e| Failure::Outside(format!("povray's picture cannot be read: {e}")))?;
     Ok(Drawn::Screen(cut(&picture, view.crop)))
+}
+
+/// The picture of a renderer that reads RIB.
+fn render_rib(
+    renderer: RibRenderer,
+    model: &Model,
+    templates: &Templates,
+    folder: &Path,
+    size: [u32; 2],
+    origin: &Origin,
+    progress: &Progress,
+) -> Result<Rgba, Failure> {
+    let shadows = match renderer {
+        RibRenderer::Pixie => RibShadows::Rays,
+        RibRenderer::Aqsis => RibShadows::Maps,
+    };
+    let rib = Rib::new(model, templates, "scene", size, origin, RibOptions { shadows, displace: false });
+    write_rib(&rib, folder, "scene", false, true)?;
+    renderer.render(folder, "scene.rib", "scene.tif", progress)?;
+    let wrong = |e: String| Failure::Outside(format!("{}'s picture cannot be read: {e}", renderer.program()));
+    let bytes = fs::read(folder.join("scene.tif")).map_err(|e| wrong(e.to_string()))?;
+    let picture = decode_png(&bytes).map_err(wrong)?;
+    if picture.bytes.chunks_exact(4).all(|pixel| pixel[..3] == picture.bytes[..3]) {
+        return Err(wrong("it is blank".to_owned()));
+    }
+    Ok(picture)
 }
 
 /// A picture that is there already, as a screen shows it.

@@ -8,10 +8,12 @@ use minijinja::{AutoEscape, Environment, UndefinedBehavior};
 use serde::Serialize;
 
 /// The embedded templates by file name.
-const EMBEDDED: [(&str, &str); 3] = [
+const EMBEDDED: [(&str, &str); 5] = [
     ("scene.inc", include_str!("../../templates/scene.inc")),
     ("scene.pov", include_str!("../../templates/scene.pov")),
     ("scene.ini", include_str!("../../templates/scene.ini")),
+    ("scene.rib", include_str!("../../templates/scene.rib")),
+    ("thorns.sl", include_str!("../../templates/thorns.sl")),
 ];
 
 /// A template that cannot be filled in.
@@ -45,6 +47,12 @@ impl Templates {
     /// Takes `text` in place of the template called `name`.
     pub fn replace(&mut self, name: &str, text: String) {
         self.texts.insert(name.to_owned(), text);
+    }
+
+    /// The text of the template called `name`, as it is.
+    #[must_use]
+    pub fn text(&self, name: &str) -> &str {
+        self.texts.get(name).map_or("", String::as_str)
     }
 
     /// The template called `name`, filled in with `values`.

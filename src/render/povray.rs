@@ -1,16 +1,13 @@
 //! POV-Ray: one run on a scene in a folder (`reference/povray.md`).
 
-use std::io::{self, Read};
+use std::io;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
-use std::thread;
-use std::time::Duration;
+use std::process::{Command, Stdio};
+use std::sync::mpsc::RecvTimeoutError;
 
+use super::child::{POLL, Watched, listen};
 use crate::math::{Cancelled, Progress};
 
-/// How often we look whether to stop, in milliseconds.
-const POLL: Duration = Duration::from_millis(50);
 /// Lines of POV-Ray's own words that an error repeats.
 const WORDS: usize = 12;
 
@@ -58,17 +55,6 @@ pub enum PovrayError {
     /// Stopped by its [`Progress`]; the child was ended.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-}
-
-/// A child that does not outlive us.
-struct Watched(Child);
-
-impl Drop for Watched {
-    fn drop(&mut self) {
-        // Both fail only when it has ended already.
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
 }
 
 impl Povray {
@@ -127,41 +113,13 @@ impl Povray {
                 Err(RecvTimeoutError::Disconnected) => break,
             }
         }
-        let status = loop {
-            progress.check()?;
-            match child.0.try_wait()? {
-                Some(status) => break status,
-                None => thread::sleep(POLL),
-            }
-        };
+        let status = child.wait(progress)??;
         if !status.success() || !folder.join(picture).is_file() {
             return Err(PovrayError::Failed { status: status.to_string(), words: last_words(&said) });
         }
         let warnings = said.into_iter().filter(|line| line.contains("Warning")).collect();
         Ok(Rendered { warnings })
     }
-}
-
-/// The lines of a stream, split at returns as at line ends, from a thread of their own.
-fn listen(stream: Option<impl Read + Send + 'static>) -> Receiver<String> {
-    let (send, lines) = channel();
-    if let Some(stream) = stream {
-        thread::spawn(move || {
-            let mut line = Vec::new();
-            for byte in io::BufReader::new(stream).bytes().map_while(Result::ok) {
-                if byte != b'\r' && byte != b'\n' {
-                    line.push(byte);
-                    continue;
-                }
-                let text = String::from_utf8_lossy(&line).trim().to_owned();
-                line.clear();
-                if !text.is_empty() && send.send(text).is_err() {
-                    return;
-                }
-            }
-        });
-    }
-    lines
 }
 
 /// The share done that a line such as `Rendered 1024 of 19200 pixels (5%)` tells.

@@ -1,0 +1,121 @@
+//! Scenes for renderers as files: what people edit stays as they left it.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use flate2::{Compression, GzBuilder};
+
+use super::error::Failure;
+use crate::export::{Pov, Rib, Templates};
+use crate::files::{encode_exr, is_edited, seal, write_bytes, write_whole};
+
+/// The templates, those in `folder` in place of the program's own.
+pub fn read_templates(folder: Option<&Path>) -> Result<Templates, Failure> {
+    let mut templates = Templates::default();
+    let Some(folder) = folder else { return Ok(templates) };
+    let mut found = false;
+    for name in Templates::names() {
+        let path = folder.join(name);
+        match fs::read_to_string(&path) {
+            Ok(text) => {
+                templates.replace(name, text);
+                found = true;
+            }
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
+            Err(error) => return Err(Failure::file("read", &path, &error)),
+        }
+    }
+    if found {
+        return Ok(templates);
+    }
+    let names: Vec<_> = Templates::names().collect();
+    Err(Failure::Usage(format!("{} has none of the templates {}", folder.display(), names.join(", "))))
+}
+
+/// What writing a scene did.
+pub struct Written {
+    /// Files written.
+    pub files: Vec<PathBuf>,
+    /// Files left alone because they were edited.
+    pub kept: Vec<PathBuf>,
+}
+
+/// Writes NAME.inc, always, and NAME.pov and NAME.ini, unless they were edited.
+pub fn write_pov(pov: &Pov<'_>, folder: &Path, name: &str, force: bool) -> Result<Written, Failure> {
+    let inc = folder.join(format!("{name}.inc"));
+    // Filled in before anything is written, so that a wrong template changes no file.
+    let texts = [
+        (folder.join(format!("{name}.pov")), "//", pov.scene()),
+        (folder.join(format!("{name}.ini")), ";", pov.settings()),
+    ];
+    let mut filled = Vec::new();
+    for (path, comment, text) in texts {
+        filled.push((seal(comment, &text.map_err(|e| failure(&path, e))?), path));
+    }
+    write_whole(&inc, |out| pov.write_inc(out)).map_err(|e| failure(&inc, e))?;
+    let mut written = Written { files: vec![inc], kept: Vec::new() };
+    if let Some((sky, strength)) = pov.sky() {
+        let path = folder.join(format!("{name}-sky.exr"));
+        write_whole(&path, |out| {
+            let mut bytes = std::io::Cursor::new(Vec::new());
+            encode_exr(&sky.layers(strength), &mut bytes)?;
+            out.write_all(bytes.get_ref())
+        })
+        .map_err(|e| failure(&path, e))?;
+        written.files.push(path);
+    }
+    for (text, path) in filled {
+        written.keep_or_write(&text, path, force)?;
+    }
+    Ok(written)
+}
+
+/// Writes NAME.archive.rib, always, and NAME.rib, unless it was edited; thorns.sl where the scene uses it.
+pub fn write_rib(rib: &Rib<'_>, folder: &Path, name: &str, gzip: bool, force: bool) -> Result<Written, Failure> {
+    let archive = folder.join(format!("{name}.archive.rib"));
+    let scene = folder.join(format!("{name}.rib"));
+    let text = seal("#", &rib.scene().map_err(|e| failure(&scene, e))?);
+    write_whole(&archive, |out| {
+        if !gzip {
+            return rib.write_archive(out);
+        }
+        let mut packed = GzBuilder::new().write(out, Compression::default());
+        rib.write_archive(&mut packed)?;
+        packed.finish().map(|_| ())
+    })
+    .map_err(|e| failure(&archive, e))?;
+    let mut written = Written { files: vec![archive], kept: Vec::new() };
+    if let Some(shader) = rib.shader() {
+        let path = folder.join("thorns.sl");
+        write_bytes(&path, shader.as_bytes()).map_err(|e| failure(&path, e))?;
+        written.files.push(path);
+    }
+    written.keep_or_write(&text, scene, force)?;
+    Ok(written)
+}
+
+impl Written {
+    /// Writes a file that people edit, unless one did.
+    fn keep_or_write(&mut self, text: &str, path: PathBuf, force: bool) -> Result<(), Failure> {
+        let edited = match fs::read_to_string(&path) {
+            Ok(old) => is_edited(&old),
+            Err(error) => error.kind() != std::io::ErrorKind::NotFound,
+        };
+        if edited && !force {
+            self.kept.push(path);
+            return Ok(());
+        }
+        write_bytes(&path, text.as_bytes()).map_err(|e| failure(&path, e))?;
+        self.files.push(path);
+        Ok(())
+    }
+}
+
+fn failure(path: &Path, error: std::io::Error) -> Failure {
+    match error.kind() {
+        // The template's own error says which it is.
+        std::io::ErrorKind::InvalidData => Failure::Usage(error.to_string()),
+        _ => Failure::file("write", path, &error),
+    }
+}

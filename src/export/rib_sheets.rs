@@ -1,0 +1,136 @@
+//! Sky and ground in RIB: sheets of polygons with a colour at each corner, since no renderer's background is another's, and as
+//! much of them as the camera sees, since nothing may reach behind it.
+
+use serde::Serialize;
+
+use super::decimal::number;
+use super::rib::{PLAIN, colour, ray, triple};
+use crate::math::{Colour, DVec3};
+use crate::model::{Camera, Digits, FADE, Light, Model, Sky};
+
+/// Squares across and down the picture.
+const SQUARES: [u32; 2] = [16, 48];
+/// The sky stands at so many times the distance of the farthest of the scene.
+const BEHIND: f64 = 1.2;
+
+/// A sheet of polygons.
+#[derive(Debug, Serialize)]
+pub(super) struct Sheet {
+    pub name: &'static str,
+    pub surface: String,
+    pub body: String,
+    /// Its greatest distance along the view.
+    #[serde(skip)]
+    pub far: f64,
+}
+
+/// The sky behind everything, and the ground, for a picture of `size` pixels.
+pub(super) fn sheets(model: &Model, size: [u32; 2], digits: Digits) -> Vec<Sheet> {
+    let ground = ground(model, size, digits);
+    let camera = &model.camera;
+    let far = model.bounds().corners().map(|p| depth(camera, p)).into_iter();
+    let far = far.chain(ground.as_ref().map(|sheet| sheet.far));
+    let wall = far.fold((camera.look_at - camera.at).length(), f64::max) * BEHIND;
+    let is_plain = matches!(model.sky, Sky::Gradient { horizon, zenith } if horizon == zenith);
+    let mut grid = Grid::default();
+    let [across, down] = if is_plain { [1, 1] } else { SQUARES };
+    for square in squares([across, down], size) {
+        let rays = square.map(|[x, y]| ray(camera, x, y));
+        // To the wall, which stands across the view.
+        let place = |(from, way): (DVec3, DVec3)| from + way * ((wall - depth(camera, from)) / depth(camera, camera.at + way));
+        // Below the horizon the sky goes on as it is there.
+        let seen = |way: DVec3| if way.z < 0.0 { way.with_z(0.0).normalize_or(way) } else { way };
+        rays.into_iter().for_each(|(from, way)| grid.corner(place((from, way)), model.sky.colour(seen(way))));
+    }
+    let surface = "Surface \"constant\"".to_owned();
+    let sky = Sheet { name: "sky", surface, body: grid.text(digits), far: wall };
+    std::iter::once(sky).chain(ground).collect()
+}
+
+/// The part of the ground that the camera sees.
+fn ground(model: &Model, size: [u32; 2], digits: Digits) -> Option<Sheet> {
+    let (ground, camera) = (model.ground?, &model.camera);
+    let radius = ground.radius.unwrap_or(ground.reach);
+    // Where a ray meets the plane, if it does that in front of the camera and near enough.
+    let meets = |[x, y]: [f64; 2]| {
+        let (from, way) = ray(camera, x, y);
+        let t = (ground.height - from.z) / way.z;
+        let p = from + way * t;
+        (t.is_finite() && t > 0.0 && p.truncate().length() <= radius).then_some(p)
+    };
+    let light = light_above(model);
+    let material = &ground.material;
+    let (Colour(own), Colour(horizon)) = (material.colour, model.sky.at_horizon());
+    let lit = |i: usize| (material.ambient + material.diffuse * light[i]).max(1e-3);
+    let mut grid = Grid::default();
+    let mut far: f64 = 0.0;
+    for square in squares(SQUARES, size) {
+        let [Some(a), Some(b), Some(c), Some(d)] = square.map(meets) else { continue };
+        for p in [a, b, c, d] {
+            // It fades into the horizon, as POV-Ray's does: so bright that under this light it looks so.
+            let fade = (1.0 - p.truncate().length() / ground.reach) / FADE;
+            let share = if ground.radius.is_some() { 1.0 } else { fade.clamp(0.0, 1.0) };
+            grid.corner(p, Colour([0, 1, 2].map(|i| own[i] * share + horizon[i] / lit(i) * (1.0 - share))));
+            far = far.max(depth(camera, p));
+        }
+    }
+    let [ka, kd] = [material.ambient, material.diffuse].map(|x| number(x, PLAIN));
+    let surface = format!("Surface \"matte\" \"float Ka\" [{ka}] \"float Kd\" [{kd}]");
+    (!grid.points.is_empty()).then(|| Sheet { name: "ground", surface, body: grid.text(digits), far })
+}
+
+/// Distance along the view.
+fn depth(camera: &Camera, p: DVec3) -> f64 {
+    (p - camera.at).dot(camera.frame()[2])
+}
+
+/// The corners of squares that cover a picture of `size` pixels and one more beyond each edge, as fractions of it.
+fn squares([across, down]: [u32; 2], size: [u32; 2]) -> impl Iterator<Item = [[f64; 2]; 4]> {
+    let at = move |i: u32, n: u32, axis: usize| {
+        let slack = 1.0 / f64::from(size[axis]);
+        f64::from(i) / f64::from(n) * (1.0 + 2.0 * slack) - slack
+    };
+    (0..down).flat_map(move |y| {
+        (0..across).map(move |x| {
+            [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]].map(|[x, y]| [at(x, across, 0), at(y, down, 1)])
+        })
+    })
+}
+
+/// What the lights without regard to shadows add up to on level ground, by colour.
+fn light_above(model: &Model) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for light in &model.lights {
+        if let Light::Sun { towards, colour: Colour(c), .. } = light {
+            (0..3).for_each(|i| sum[i] += c[i] * towards.z.max(0.0));
+        }
+    }
+    sum
+}
+
+/// Squares with a colour at each corner.
+#[derive(Default)]
+struct Grid {
+    points: Vec<DVec3>,
+    colours: Vec<Colour>,
+}
+
+impl Grid {
+    fn corner(&mut self, p: DVec3, colour: Colour) {
+        self.points.push(p);
+        self.colours.push(colour);
+    }
+
+    fn text(&self, digits: Digits) -> String {
+        let counts = vec!["4"; self.points.len() / 4].join(" ");
+        let corners: Vec<String> = (0..self.points.len()).map(|i| i.to_string()).collect();
+        let points: Vec<String> = self.points.iter().map(|&p| triple(p, digits)).collect();
+        let colours: Vec<String> = self.colours.iter().map(|&c| colour(c)).collect();
+        format!(
+            "PointsPolygons [{counts}]\n[{}]\n\"P\" [{}]\n\"Cs\" [{}]",
+            corners.join(" "),
+            points.join("\n"),
+            colours.join("\n")
+        )
+    }
+}
