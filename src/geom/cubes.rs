@@ -235,6 +235,16 @@ impl Surface {
         self.triangles.iter().map(sixfold).sum::<f64>() / 6.0
     }
 
+    /// The area of all triangles.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        let twice = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| self.points[i as usize]);
+            (b - a).cross(c - a).length()
+        };
+        self.triangles.iter().map(twice).sum::<f64>() * 0.5
+    }
+
     /// Smooths away the steps of the grid, keeping the volume nearly: `rounds` of a step towards the mean of the
     /// neighbours and a larger one back (Taubin 1995).
     pub fn smooth(&mut self, rounds: u32) {

@@ -48,6 +48,9 @@ impl Voxels {
         let inside = at.clamp(DVec3::ZERO, last);
         let low = inside.to_array().map(|c| c as usize);
         let share = inside - DVec3::from_array(low.map(|c| c as f64));
+        if share == DVec3::ZERO && inside == at {
+            return self.at(low[0], low[1], low[2]);
+        }
         let high: [usize; 3] = std::array::from_fn(|axis| (low[axis] + 1).min(self.size[axis] - 1));
         let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
         let line = |y: usize, z: usize| mix(self.at(low[0], y, z), self.at(high[0], y, z), share.x);
@@ -63,11 +66,12 @@ impl Voxels {
     }
 }
 
+/// Farther than any grid is long.
+const FAR: f32 = 1e12;
+
 /// Squared distances, in steps, of each sample from the nearest that is `set`: exact, an axis at a time (Felzenszwalb and
 /// Huttenlocher 2012).
 fn squared_distances(size: [usize; 3], set: impl Fn(usize) -> bool + Sync) -> Vec<f32> {
-    /// Farther than any grid is long.
-    const FAR: f32 = 1e12;
     let [nx, ny, nz] = size;
     let mut all: Vec<f32> = (0..nx * ny * nz).into_par_iter().map(|i| if set(i) { 0.0 } else { FAR }).collect();
     all.par_chunks_mut(nx).for_each_init(Envelope::default, |envelope, row| envelope.lower(row));
@@ -118,6 +122,10 @@ struct Envelope {
 impl Envelope {
     /// Replaces each `row[x]` by the least of `row[q] + (x - q)^2`.
     fn lower(&mut self, row: &mut [f32]) {
+        // Most rows are far from any surface.
+        if row.iter().all(|&value| value == 0.0) || row.iter().all(|&value| value >= FAR) {
+            return;
+        }
         self.values.clear();
         self.values.extend_from_slice(row);
         self.stand.clear();

@@ -10,12 +10,12 @@ use crate::graph::{Graph, Lattice, Node};
 use crate::math::{DVec3, Progress, Stream};
 use crate::skeleton::{Path, Skeleton, SkeletonNode};
 
-/// Diffusion-limited aggregation around the generators, until there are so many particles or the space's border is
-/// touched.
+/// Diffusion-limited aggregation around the generators, until there are so many particles; those that would stay beyond the
+/// space's border are lost.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DlaSpec {
-    /// Particles that stay, at most.
+    /// Particles that stay; fewer where the space is full.
     #[schemars(range(min = 1, max = 10_000_000))]
     pub particles: u32,
     /// Do they walk along the lattice? Otherwise anywhere, as discs (balls) as wide as its spacing.
@@ -47,6 +47,8 @@ const LOST: f64 = 20.0;
 const CHECK: u32 = 64;
 /// Levels of the pyramid.
 const LEVELS: usize = 12;
+/// So many in a row that stay beyond the border: the space is full.
+const MOST_LOST: u32 = 1000;
 /// Steps of a walker, at most: then it starts over.
 const MOST_STEPS: u64 = 1 << 40;
 
@@ -214,7 +216,7 @@ impl DlaSpec {
             cluster.add(p, None);
         });
         let most = seeds.len() + self.particles as usize;
-        let mut made = 0_u32;
+        let (mut made, mut lost) = (0_u32, 0_u32);
         while cluster.places.len() < most {
             let landed = if self.lattice {
                 self.walk_lattice(lattice, &cluster, &mut random)
@@ -222,12 +224,14 @@ impl DlaSpec {
                 self.walk_free(&cluster, &mut random)
             };
             let Some((p, parent)) = landed else { break };
-            // It has come to the border.
-            let at = cluster.cell(p);
-            let is_border = (0..if cluster.is_flat { 2 } else { 3 })
-                .any(|axis| at[axis] <= 0 || at[axis] + 1 >= i64::from(size[axis]));
-            if !cluster.add(p, Some(parent)) || is_border {
-                break;
+            // What would stay beyond the border is lost.
+            if cluster.add(p, Some(parent)) {
+                lost = 0;
+            } else {
+                lost += 1;
+                if lost == MOST_LOST {
+                    break;
+                }
             }
             made += 1;
             if made.is_multiple_of(CHECK) {
@@ -322,7 +326,9 @@ impl DlaSpec {
                 Walk::Fast => cluster.index(at).map_or(1.0, |_| (cluster.pyramid.free(at) - 1.5).max(1.0)),
             };
             let way = cluster.direction(random);
+            // Two cells free in every direction are more than a step and a touch.
             if free <= 1.0
+                && cluster.pyramid.is_near(clamped(at, cluster.size), 1)
                 && let Some((parent, length)) = cluster.touched(p, way, free)
             {
                 return Some((p + way * length, parent));

@@ -1,8 +1,9 @@
 //! Endpoints: where paths are to go.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use rand::RngExt;
+use rustc_hash::FxHashSet;
 
 use super::Toward;
 use crate::geom::Shape;
@@ -223,7 +224,7 @@ fn reject<const N: usize>(
 ) -> Result<Vec<(Node, Option<DVec3>)>, String> {
     let mut stream = Stream::new(seed, &format!("endpoints/{stream}"));
     let mut placed = Crowd::new(apart);
-    let mut taken = HashSet::new();
+    let mut taken: FxHashSet<Node> = FxHashSet::default();
     let mut nodes = Vec::new();
     let mut rejections = 0;
     while nodes.len() < count as usize {

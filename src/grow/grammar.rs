@@ -117,7 +117,7 @@ impl GrammarSpec {
                 '/' => *axes = turn(*axes, axes.x_axis, -angle),
                 '|' => *axes = turn(*axes, axes.z_axis, std::f64::consts::PI),
                 '[' => {
-                    stack.push(turtle);
+                    stack.push((turtle, has_moved, ends.len()));
                     turtle.2 *= self.ratio;
                     has_moved = false;
                 }
@@ -126,10 +126,13 @@ impl GrammarSpec {
                         ends.push(*at);
                     }
                     match stack.pop() {
-                        Some(before) => turtle = before,
+                        Some((before, moved, count)) => {
+                            turtle = before;
+                            // A branch of nothing is no fork.
+                            has_moved = moved && !has_moved && ends.len() == count;
+                        }
                         None => break,
                     }
-                    has_moved = false;
                 }
                 'F' | 'G' => {
                     *at += axes.x_axis * *step;

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use rayon::prelude::*;
 use schemars::JsonSchema;
@@ -11,9 +11,9 @@ use serde::Deserialize;
 use super::{GrowError, LatticeSpace, Step};
 use crate::geom::{Shape, Surface, Voxels, fill};
 use crate::graph::{Graph, Lattice, Mask, Node, Window};
-use crate::math::{DVec2, Point, Progress};
+use crate::math::{DVec2, DVec3, Point, Progress};
 use crate::plan::{Goal, plan, plan_delayed};
-use crate::raster::rings;
+use crate::raster::{contours, rings};
 
 /// Regions, one for each generator: all that is nearest to it.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
@@ -27,7 +27,7 @@ pub struct RegionsSpec {
     /// Plan the border again this many times, each on a lattice twice as fine around it (section 3.1).
     #[schemars(range(min = 0, max = 3))]
     pub refine: u32,
-    /// How often surfaces in space are smoothed: 0 shows the steps of the lattice, 2 leaves edges, 10 pebbles.
+    /// How often borders are smoothed: 0 shows the steps of the lattice, 2 leaves edges, 10 pebbles.
     #[schemars(range(min = 0, max = 100))]
     pub smooth: u32,
 }
@@ -39,14 +39,19 @@ pub struct Regions {
     pub surfaces: Vec<Surface>,
     window: Window,
     is_inside: Vec<bool>,
+    /// Made when a step first asks for it.
+    solid: OnceLock<Arc<Voxels>>,
 }
 
 impl Regions {
     /// All of them as one solid.
     #[must_use]
     pub fn solid(&self) -> Arc<Voxels> {
-        let low = self.window.position([0; 3]);
-        Arc::new(Voxels::new(self.window.size, self.window.spacing, low, &self.is_inside))
+        let made = || {
+            let low = self.window.position([0; 3]);
+            Arc::new(Voxels::new(self.window.size, self.window.spacing, low, &self.is_inside))
+        };
+        self.solid.get_or_init(made).clone()
     }
 }
 
@@ -92,11 +97,19 @@ impl<const N: usize> Labelled<'_, N> {
         let is_in = |at: [u32; 3]| self.nodes[self.cell(at)].0 == region;
         let spacing = window.spacing;
         if self.lattice.is_plane() {
-            let place = |p: DVec2| (window.position([0; 3]).truncate() + p * spacing).extend(0.0);
-            let size = [window.size[0], window.size[1]];
-            let rings = rings(size, |x, y| is_in([x, y, 0]), |[x, y], axis, up| self.crossing([x, y, 0], axis, up));
-            return fill(&rings.iter().map(|ring| drawn_in(ring, spec.gap * 0.5 / spacing)).collect::<Vec<_>>())
-                .map(|p| place(p.truncate()));
+            let [low, high] = self.box_of(region);
+            let size = [high[0] + 1 - low[0], high[1] + 1 - low[1]];
+            let at = |x: u32, y: u32| [x + low[0], y + low[1], 0];
+            let mut rings = if spec.gap > 0.0 {
+                let inside: Vec<bool> =
+                    (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| is_in(at(x, y)))).collect();
+                drawn_in(size, &inside, spec.gap * 0.5 / spacing)
+            } else {
+                rings(size, |x, y| is_in(at(x, y)), |[x, y], axis, up| self.crossing(at(x, y), axis, up))
+            };
+            (0..spec.smooth).for_each(|_| rings.iter_mut().for_each(smooth));
+            let origin = window.position(low);
+            return fill(&rings).map(|p| origin.with_z(0.0) + p * spacing);
         }
         // Only the part of the window that it takes up.
         let [low, high] = self.box_of(region);
@@ -122,6 +135,7 @@ impl<const N: usize> Labelled<'_, N> {
             surfaces: surfaces.into_iter().filter(|surface| !surface.triangles.is_empty()).collect(),
             window: *self.lattice.window(),
             is_inside: self.nodes.iter().map(|&(region, _)| is_kept[usize::from(region)]).collect(),
+            solid: OnceLock::new(),
         }
     }
 
@@ -144,15 +158,28 @@ impl<const N: usize> Labelled<'_, N> {
     }
 }
 
-/// A ring moved inwards (to its left) by `by`.
-fn drawn_in(ring: &[DVec2], by: f64) -> Vec<DVec2> {
-    let n = ring.len();
-    (0..n)
-        .map(|i| {
-            let along = ring[(i + 1) % n] - ring[(i + n - 1) % n];
-            ring[i] + along.perp().normalize_or_zero() * by
+/// The rings around all that is at least `by` steps within what is `inside` on a grid of `size` samples.
+fn drawn_in([width, height]: [u32; 2], inside: &[bool], by: f64) -> Vec<Vec<DVec2>> {
+    // With a sample outside on each side.
+    let size = [width + 2, height + 2];
+    let framed: Vec<bool> = (0..size[1])
+        .flat_map(|y| {
+            (0..size[0]).map(move |x| {
+                let is_there = (1..=width).contains(&x) && (1..=height).contains(&y);
+                is_there && inside[((y - 1) * width + x - 1) as usize]
+            })
         })
-        .collect()
+        .collect();
+    let distances = Voxels::new([size[0], size[1], 1], 1.0, DVec3::ZERO, &framed);
+    let value = |x: u32, y: u32| distances.distance(DVec3::new(x.into(), y.into(), 0.0)) + by;
+    let lines = contours(size, value);
+    lines.into_iter().map(|line| line[1..].iter().map(|p| *p - 1.0).collect()).collect()
+}
+
+/// Each point of a ring halfway to the middle of its neighbours.
+fn smooth(ring: &mut Vec<DVec2>) {
+    let n = ring.len();
+    *ring = (0..n).map(|i| ring[i] * 0.5 + (ring[(i + 1) % n] + ring[(i + n - 1) % n]) * 0.25).collect();
 }
 
 impl Step {

@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use rustc_hash::FxHashMap;
+
 use super::construction::{Mark, MarkKind, construction};
 use super::{
     Dbm, DlaSpec, Endpoints, FractalSpec, LatticeSpace, Near, Placement, Refine, Regions, RegionsSpec, Repeat, SIDE, Solver,
@@ -340,6 +342,10 @@ impl Step {
                 Source::At(_) | Source::Inside(_) | Source::Spread(_) => "no node of the space lies in this shape",
             }));
         }
+        // Nodes of a shape differ.
+        if matches!(self.source, Source::Inside(_)) {
+            return Ok(starts);
+        }
         // Of several places about a node the nearest, then the first.
         let far = |&(node, p): &(Node, Option<DVec3>)| p.map_or(0.0, |p| (p - lattice.position(node)).length_squared());
         let mut best: HashMap<Node, usize> = HashMap::new();
@@ -398,16 +404,17 @@ impl Step {
         let lattice = plan.graph();
         let range = lattice.weight_range();
         let mut skeleton = Skeleton::new(self.classes.clone());
-        let mut known = HashMap::new();
+        let mut known: FxHashMap<Node, u32> = FxHashMap::default();
         let mut dropped = 0;
         // What was told exactly is there exactly; the rest is on nodes.
-        let exact: HashMap<Node, DVec3> = wanted
+        let exact: FxHashMap<Node, DVec3> = wanted
             .iter()
             .filter_map(|&(node, at, _)| Some((node, at?)))
             .chain(starts.iter().filter_map(|&(node, at)| Some((node, at?))))
             .collect();
+        let mut way: Vec<(Node, u32)> = Vec::new();
         for &(end, _, set) in wanted {
-            let Some(cost) = plan.cost(end) else {
+            if !plan.is_reached(end) {
                 if self.unreached == Unreached::Error {
                     return Err(GrowError::Scene {
                         place: format!("grow.{}.to.{}", self.name, set.name),
@@ -419,13 +426,17 @@ impl Step {
                 }
                 dropped += 1;
                 continue;
-            };
-            let mut left = cost;
-            let path = plan.path(end).map(|node| {
-                let here =
-                    (node, exact.get(&node).copied().unwrap_or_else(|| lattice.position(node)), range.real(left));
-                left -= plan.predecessor(node).map_or(0, |(_, weight)| u64::from(weight));
-                here
+            }
+            way.clear();
+            let mut next = Some((end, 0));
+            while let Some((node, weight)) = next {
+                next = plan.predecessor(node);
+                way.push((node, weight));
+            }
+            let mut left: u64 = way.iter().map(|&(_, weight)| u64::from(weight)).sum();
+            let path = way.iter().map(|&(node, weight)| {
+                left -= u64::from(weight);
+                (node, exact.get(&node).copied().unwrap_or_else(|| lattice.position(node)), range.real(left))
             });
             skeleton.add_path(&mut known, set.class, path);
         }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::Object;
+use super::{Ball, Object};
 use crate::geom::Bounds;
 use crate::math::{Colour, DVec3, from_srgb, to_srgb};
 
@@ -60,10 +60,20 @@ impl Object {
         let mut parts: BTreeMap<[u8; 3], Self> = BTreeMap::new();
         let mut renamed = vec![0; self.balls.len()];
         let empty = Self { balls: Vec::new(), segments: Vec::new(), ..self.clone() };
+        // Limbs are numbered anew in each part.
+        let limbs = self.balls.iter().map(|ball| ball.branch as usize + 1).max().unwrap_or(0);
+        let mut limb = vec![u32::MAX; limbs];
+        let mut counts: BTreeMap<[u8; 3], u32> = BTreeMap::new();
         for (i, ball) in self.balls.iter().enumerate() {
             let part = parts.entry(colours[i]).or_insert_with(|| empty.clone());
             renamed[i] = part.balls.len() as u32;
-            part.balls.push(*ball);
+            let branch = &mut limb[ball.branch as usize];
+            if *branch == u32::MAX {
+                let count = counts.entry(colours[i]).or_default();
+                *branch = *count;
+                *count += 1;
+            }
+            part.balls.push(Ball { branch: *branch, ..*ball });
         }
         for &[a, b] in &self.segments {
             if let Some(part) = parts.get_mut(&colours[a as usize]) {

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::geom::Surface;
 use crate::grow::{Grown, Step};
-use crate::math::Ref;
+use crate::math::{DVec3, Ref};
 use crate::skeleton::{Skeleton, apart, crossings, dimension, floating, measure_from, shared_ends};
 
 /// A claim about a step: one quantity, and what it is held against.
@@ -28,6 +29,13 @@ pub struct Claim {
     /// It is more than the same quantity of this step.
     #[serde(default)]
     pub more_than: Option<Ref<Step>>,
+    /// It is as much as the same quantity of this step, to `within`.
+    #[serde(default)]
+    pub as_of: Option<Ref<Step>>,
+    /// The greatest difference from that of `as_of`.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub within: f64,
     /// It is more than the other by at least this factor.
     #[serde(default = "one")]
     #[schemars(range(min = 1.0, max = 1e6))]
@@ -103,6 +111,20 @@ pub enum Quantity {
     EdgesPerNode,
     /// Endpoints that no path reached.
     Dropped,
+    /// Number of trees: nodes where growth began.
+    Trees,
+    /// The share of all nodes that the largest tree has.
+    LargestShare,
+    /// How far it is from looking the same after a sixth of a turn about its middle, as a share of its greatest extent.
+    SixfoldError,
+    /// Of regions: their number.
+    Surfaces,
+    /// Of regions: 1 where all their surfaces are closed, consistently oriented 2-manifolds, else 0.
+    Closed,
+    /// Of regions: the least share that one has of the ball around it.
+    Compactness,
+    /// Of regions: the mean of the surface of one over that of a ball with its volume.
+    Roughness,
 }
 
 impl Quantity {
@@ -121,6 +143,25 @@ impl Quantity {
             Self::GraphNodes => grown.nodes as f64,
             Self::EdgesPerNode => grown.edges as f64 / grown.nodes.max(1) as f64,
             Self::Dropped => grown.dropped as f64,
+            Self::Trees => trees(skeleton).len() as f64,
+            Self::LargestShare => {
+                trees(skeleton).into_iter().max().unwrap_or(0) as f64 / skeleton.nodes.len().max(1) as f64
+            }
+            Self::SixfoldError => {
+                let root = skeleton.nodes.first().map_or(DVec3::ZERO, |n| n.position);
+                let extent = skeleton.nodes.iter().map(|n| (n.position - root).length()).fold(1e-12, f64::max);
+                skeleton.asymmetry(6) / extent
+            }
+            Self::Surfaces => surfaces(grown).len() as f64,
+            Self::Closed => {
+                let is_closed = |surface: &Surface| surface.is_closed_manifold() && surface.volume() > 0.0;
+                f64::from(u8::from(!surfaces(grown).is_empty() && surfaces(grown).iter().all(is_closed)))
+            }
+            Self::Compactness => surfaces(grown).iter().map(compactness).fold(1.0, f64::min),
+            Self::Roughness => {
+                let all = surfaces(grown);
+                all.iter().map(roughness).sum::<f64>() / all.len().max(1) as f64
+            }
             Self::Endpoints => m.endpoints as f64,
             Self::Length => m.length,
             Self::Tortuosity => m.tortuosity,
@@ -142,6 +183,40 @@ impl Quantity {
             Self::Crossings => crossings(skeleton, with.unwrap_or(skeleton)) as f64,
         }
     }
+}
+
+/// The number of nodes of each tree.
+fn trees(skeleton: &Skeleton) -> Vec<usize> {
+    let mut tree: Vec<usize> = Vec::with_capacity(skeleton.nodes.len());
+    let mut counts = Vec::new();
+    for node in &skeleton.nodes {
+        let own = node.parent.map_or_else(
+            || {
+                counts.push(0);
+                counts.len() - 1
+            },
+            |parent| tree[parent as usize],
+        );
+        counts[own] += 1;
+        tree.push(own);
+    }
+    counts
+}
+
+/// The surfaces of a step by regions.
+fn surfaces(grown: &Grown) -> &[Surface] {
+    grown.regions.as_ref().map_or(&[], |regions| &regions.surfaces)
+}
+
+fn compactness(surface: &Surface) -> f64 {
+    let centre = surface.points.iter().copied().sum::<DVec3>() / surface.points.len().max(1) as f64;
+    let reach = surface.points.iter().map(|p| (*p - centre).length()).fold(1e-12, f64::max);
+    surface.volume() / (4.0 / 3.0 * std::f64::consts::PI * reach * reach * reach)
+}
+
+fn roughness(surface: &Surface) -> f64 {
+    let radius = libm::cbrt(surface.volume() * 0.75 / std::f64::consts::PI);
+    surface.area() / (4.0 * std::f64::consts::PI * radius * radius)
 }
 
 /// What was found of a claim.
@@ -175,6 +250,11 @@ pub fn check_claims(claims: &BTreeMap<String, Claim>, grown: &[Grown]) -> Vec<Fi
         if let Some(most) = claim.at_most {
             against.push(format!("at most {most}"));
             holds &= measured <= most;
+        }
+        if let Some(other) = &claim.as_of {
+            let same = claim.measure.of(step(other)?, None);
+            against.push(format!("{same:.4} of `{}` to {}", other.name, claim.within));
+            holds &= (measured - same).abs() <= claim.within;
         }
         if let Some(other) = &claim.more_than {
             let than = claim.measure.of(step(other)?, None);

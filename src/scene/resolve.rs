@@ -169,14 +169,20 @@ pub(super) fn resolve(
     let lights = r.lights(is_flat);
     for (name, claim) in &scene.claim {
         for (key, step) in
-            [("of", Some(&claim.of)), ("more_than", claim.more_than.as_ref()), ("with", claim.with.as_ref())]
+            [
+                ("of", Some(&claim.of)),
+                ("more_than", claim.more_than.as_ref()),
+                ("as_of", claim.as_of.as_ref()),
+                ("with", claim.with.as_ref()),
+            ]
         {
             if let Some(step) = step {
                 r.find(&format!("claim.{name}.{key}"), "step", step, scene.grow.keys());
             }
         }
-        if claim.at_least.is_none() && claim.at_most.is_none() && claim.more_than.is_none() {
-            r.wrong(&format!("claim.{name}"), "a claim needs `at_least`, `at_most` or `more_than`".to_owned());
+        let others = [claim.more_than.as_ref(), claim.as_of.as_ref()];
+        if claim.at_least.is_none() && claim.at_most.is_none() && others.iter().all(Option::is_none) {
+            r.wrong(&format!("claim.{name}"), "a claim needs `at_least`, `at_most`, `more_than` or `as_of`".to_owned());
         }
     }
     for (empty, key) in [(steps.is_empty(), "grow"), (objects.is_empty(), "object"), (spaces.is_empty(), "space")] {

@@ -1,7 +1,7 @@
 //! Paths become a forest.
 
 use std::collections::HashMap;
-use std::hash::Hash;
+use std::hash::{BuildHasher, Hash};
 
 use crate::math::DVec3;
 
@@ -58,13 +58,13 @@ impl Skeleton {
 
     /// Adds the path given from its endpoint back to a generator: each node, its position and its cost. Paths that
     /// meet share their nodes; `known` remembers which are there.
-    pub fn add_path<K: Copy + Eq + Hash>(
+    pub fn add_path<K: Copy + Eq + Hash, S: BuildHasher>(
         &mut self,
-        known: &mut HashMap<K, u32>,
+        known: &mut HashMap<K, u32, S>,
         class: u16,
         path: impl Iterator<Item = (K, DVec3, f64)>,
     ) {
-        let mut fresh = Vec::new();
+        let mut fresh = Vec::with_capacity(16);
         let mut parent = None;
         for (node, position, cost) in path {
             if let Some(&at) = known.get(&node) {

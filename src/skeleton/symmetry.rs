@@ -55,11 +55,11 @@ impl Skeleton {
         whole
     }
 
-    /// How far the skeleton is from looking the same after a turn of a `fold`-th about the upright axis through its first
-    /// node: the greatest distance of a turned node from the nearest one.
+    /// How far the skeleton is from looking the same after a turn of a `fold`-th about the upright axis through the middle of
+    /// its nodes: the greatest distance of a turned node from the nearest one.
     #[must_use]
     pub fn asymmetry(&self, fold: u32) -> f64 {
-        let Some(root) = self.nodes.first().map(|n| n.position) else { return 0.0 };
+        let root = self.nodes.iter().map(|n| n.position).sum::<DVec3>() / self.nodes.len().max(1) as f64;
         let turn = rotation(DVec3::Z, std::f64::consts::TAU / f64::from(fold));
         let turned = |p: DVec3| root + turn * (p - root);
         let mut sorted: Vec<DVec3> = self.nodes.iter().map(|n| n.position).collect();
