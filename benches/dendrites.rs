@@ -114,7 +114,7 @@ fn surfaces() {
     let field: Vec<f32> = (0..n * n * n)
         .map(|i| {
             let at = [i % n, i / n % n, i / (n * n)].map(|c| f64::from(c) / f64::from(n) * 18.0);
-            let wave = at[0].sin() * at[1].cos() + at[1].sin() * at[2].cos() + at[2].sin() * at[0].cos();
+            let wave: f64 = (0..3).map(|i| libm::sin(at[i]) * libm::cos(at[(i + 1) % 3])).sum();
             (wave + (mix(u64::from(i)) % 1000) as f64 * 1e-4) as f32
         })
         .collect();
@@ -122,20 +122,24 @@ fn surfaces() {
     let mut triangles = 0;
     let seconds = median(
         || {
-            let surface = Surface::extract([n; 3], |at| field[cell(at)] < 0.0, |at, axis, up| {
-                let mut other = at;
-                other[axis] = other[axis].wrapping_add_signed(if up { 1 } else { -1 });
-                if other[axis] >= n {
-                    return 0.5;
-                }
-                let (a, b) = (f64::from(field[cell(at)]), f64::from(field[cell(other)]));
-                a / (a - b)
-            });
+            let surface = Surface::extract(
+                [n; 3],
+                |at| field[cell(at)] < 0.0,
+                |at, axis, up| {
+                    let mut other = at;
+                    other[axis] = other[axis].wrapping_add_signed(if up { 1 } else { -1 });
+                    if other[axis] >= n {
+                        return 0.5;
+                    }
+                    let (a, b) = (f64::from(field[cell(at)]), f64::from(field[cell(other)]));
+                    a / (a - b)
+                },
+            );
             triangles = surface.triangles.len();
         },
         5,
     );
-    let voxels = f64::from(n).powi(3);
+    let voxels = f64::from(n * n * n);
     println!("ours         {:>6.1} million voxels a second, {triangles} triangles", voxels / seconds * 1e-6);
     let script = "
 import sys, time, numpy as np
@@ -176,7 +180,8 @@ fn moss() -> Result<(), Failure> {
     let origin = Origin::default();
     let mut bytes = [0_u64; 2];
     Pov::new(&model, &templates, "moss", scene.size, &origin).write_inc(Count(&mut bytes[0]))?;
-    Rib::new(&model, &templates, "moss", scene.size, &origin, RibOptions::default()).write_archive(Count(&mut bytes[1]))?;
+    Rib::new(&model, &templates, "moss", scene.size, &origin, RibOptions::default())
+        .write_archive(Count(&mut bytes[1]))?;
     let written = begun.elapsed().as_secs_f64();
     let view = View::new(scene.size, Look::Studio, 4);
     render(&World::new(&model), &view, &Progress::default())?;

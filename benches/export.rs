@@ -33,6 +33,8 @@ fn million() -> Model {
         poses: Vec::new(),
         digits,
         shadow: true,
+        thorns: None,
+        is_thorns: false,
     };
     let grey = Colour([0.5; 3]);
     Model {

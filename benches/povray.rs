@@ -43,6 +43,8 @@ fn model(count: usize) -> Model {
             poses: Vec::new(),
             digits,
             shadow: true,
+            thorns: None,
+            is_thorns: false,
         }],
         materials: vec![("bark".to_owned(), Material::matt(Colour([0.5, 0.4, 0.3])))],
         camera: Camera {

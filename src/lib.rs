@@ -1,4 +1,4 @@
-//! Lichtenberg grows branching things - elms, roots, lightning, coral - by planning least-cost paths through randomly
+//! Lichtenberg grows branching things - elms, lightning, coral, lichen, moss, and the rocks under them - by planning least-cost paths through randomly
 //! weighted graphs, and hands them to renderers. This is the library behind the command `lichtenberg`.
 //!
 //! # Vocabulary
@@ -17,12 +17,12 @@
 //! | [`skeleton`] | the forest of paths, with radii: a [`skeleton::Skeleton`] |
 //! | [`grow`] | the steps of a scene: a [`grow::Grown`] each |
 //! | [`model`] | what renderers and exporters read: a [`model::Model`] |
-//! | [`export`] | POV-Ray and SVG |
+//! | [`export`] | POV-Ray, RIB, SVG, OBJ and PLY |
 //! | [`trace`] | the preview: a [`trace::Picture`] |
 //! | [`compare`] | how far pictures are apart, and reports |
 //! | [`files`] | pictures and sketches in and out; whole files or none |
 //! | [`scene`] | scenes with every mistake reported |
-//! | [`render`] | driving POV-Ray |
+//! | [`render`] | driving POV-Ray, Pixie and Aqsis |
 //!
 //! A stage imports earlier ones only; a test holds it to that.
 //!

@@ -30,6 +30,8 @@ fn model(balls: Vec<Ball>, segments: Vec<[u32; 2]>) -> Model {
             poses: Vec::new(),
             digits: Digits(5),
             shadow: true,
+            thorns: None,
+            is_thorns: false,
         }],
         materials: vec![("white".to_owned(), Material::matt(Colour([1.0; 3])))],
         camera: Camera {

@@ -16,9 +16,9 @@ use super::write::{read_templates, write_pov, write_rib};
 use super::{terminal, watch};
 use crate::export::{Origin, Pov, Rib, RibOptions, RibShadows, SvgOptions, Templates, identifier, write_svg};
 use crate::files::{Rgba, decode_exr, decode_png, draw_svg};
-use crate::model::Model;
 use crate::grow::MarkKind;
 use crate::math::Progress;
+use crate::model::Model;
 use crate::render::{Povray, RibRenderer};
 use crate::scene::Resolved;
 

@@ -242,7 +242,9 @@ fn surface(m: &Material) -> String {
     let shader = if shine > 0.0 {
         let rough = if m.specular > 0.0 { m.roughness } else { 1.0 / m.phong_size };
         let [ks, rough] = [shine, rough].map(|x| number(x, PLAIN));
-        format!("Surface \"plastic\" \"float Ka\" [{ka}] \"float Kd\" [{kd}] \"float Ks\" [{ks}] \"float roughness\" [{rough}]")
+        format!(
+            "Surface \"plastic\" \"float Ka\" [{ka}] \"float Kd\" [{kd}] \"float Ks\" [{ks}] \"float roughness\" [{rough}]"
+        )
     } else {
         format!("Surface \"matte\" \"float Ka\" [{ka}] \"float Kd\" [{kd}]")
     };

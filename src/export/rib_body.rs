@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::decimal::{number, push_number};
 use super::identifier::plain;
-use super::rib::{RibOptions, triple};
+use super::rib::{RibOptions, RibShadows, triple};
 use crate::geom::frustum;
 use crate::math::DVec3;
 use crate::model::{Digits, Instance, Mesh, Object, Pose};
@@ -27,12 +27,11 @@ pub(super) fn write_object(
 ) -> io::Result<()> {
     writeln!(out, "AttributeBegin\nAttribute \"identifier\" \"string name\" [\"{}\"]", plain(&object.name))?;
     writeln!(out, "{surface}")?;
-    if !object.shadow {
+    if !object.shadow && options.shadows == RibShadows::Rays {
         writeln!(out, "Attribute \"visibility\" \"int transmission\" [0]")?;
     }
     if let Some(thorns) = object.thorns.filter(|_| options.displace) {
-        let [height, radius, apart] =
-            [thorns.length, thorns.radius, thorns.apart].map(|x| number(x, object.digits));
+        let [height, radius, apart] = [thorns.length, thorns.radius, thorns.apart].map(|x| number(x, object.digits));
         writeln!(
             out,
             "Attribute \"displacementbound\" \"float sphere\" [{height}] \"string coordinatesystem\" [\"shader\"]"
@@ -144,22 +143,23 @@ fn write_mesh(
         }
     }
     let mut text: Vec<u8> = Vec::with_capacity(BUFFER + 512);
-    let mut list = |out: &mut dyn Write, head: &str, count: usize, item: &dyn Fn(&mut Vec<u8>, usize)| -> io::Result<()> {
-        text.extend_from_slice(head.as_bytes());
-        text.extend_from_slice(b" [");
-        for i in 0..count {
-            text.push(if i % 8 == 0 { b'\n' } else { b' ' });
-            item(&mut text, i);
-            if text.len() >= BUFFER {
-                out.write_all(&text)?;
-                text.clear();
+    let mut list =
+        |out: &mut dyn Write, head: &str, count: usize, item: &dyn Fn(&mut Vec<u8>, usize)| -> io::Result<()> {
+            text.extend_from_slice(head.as_bytes());
+            text.extend_from_slice(b" [");
+            for i in 0..count {
+                text.push(if i % 8 == 0 { b'\n' } else { b' ' });
+                item(&mut text, i);
+                if text.len() >= BUFFER {
+                    out.write_all(&text)?;
+                    text.clear();
+                }
             }
-        }
-        text.extend_from_slice(b"]\n");
-        out.write_all(&text)?;
-        text.clear();
-        Ok(())
-    };
+            text.extend_from_slice(b"]\n");
+            out.write_all(&text)?;
+            text.clear();
+            Ok(())
+        };
     let vector = |text: &mut Vec<u8>, p: DVec3, digits: Digits| {
         for (i, c) in p.to_array().into_iter().enumerate() {
             if i > 0 {

@@ -37,7 +37,8 @@ pub(super) fn sheets(model: &Model, size: [u32; 2], digits: Digits) -> Vec<Sheet
     for square in squares([across, down], size) {
         let rays = square.map(|[x, y]| ray(camera, x, y));
         // To the wall, which stands across the view.
-        let place = |(from, way): (DVec3, DVec3)| from + way * ((wall - depth(camera, from)) / depth(camera, camera.at + way));
+        let place =
+            |(from, way): (DVec3, DVec3)| from + way * ((wall - depth(camera, from)) / depth(camera, camera.at + way));
         // Below the horizon the sky goes on as it is there.
         let seen = |way: DVec3| if way.z < 0.0 { way.with_z(0.0).normalize_or(way) } else { way };
         rays.into_iter().for_each(|(from, way)| grid.corner(place((from, way)), model.sky.colour(seen(way))));

@@ -10,18 +10,33 @@ fn checksum(text: &str) -> u64 {
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
-/// `text` under a comment line with its checksum; `comment` starts a comment.
+/// `text` with a comment line that has its checksum: at its head, or below a first line that is a comment of two signs, which
+/// tells what kind of file it is. `comment` starts a comment.
 #[must_use]
 pub fn seal(comment: &str, text: &str) -> String {
-    format!("{comment} {MARK} {:016x}\n{text}", checksum(text))
+    let line = format!("{comment} {MARK} {:016x}\n", checksum(text));
+    match text.split_once('\n') {
+        Some((kind, rest)) if kind.starts_with(&comment.repeat(2)) => format!("{kind}\n{line}{rest}"),
+        _ => line + text,
+    }
 }
 
 /// Is `text` anything but what [`seal`] returned?
 #[must_use]
 pub fn is_edited(text: &str) -> bool {
-    let Some((line, rest)) = text.split_once('\n') else { return true };
-    let sum = line.split_once(MARK).and_then(|(_, sum)| u64::from_str_radix(sum.trim(), 16).ok());
-    sum != Some(checksum(rest))
+    let mut lines = text.splitn(3, '\n');
+    let (Some(first), Some(second)) = (lines.next(), lines.next()) else { return true };
+    let third = lines.next();
+    let sum = |line: &str| {
+        let (_, sum) = line.split_once(MARK)?;
+        u64::from_str_radix(sum.trim(), 16).ok()
+    };
+    let rest = third.map_or(String::new(), |third| format!("\n{third}"));
+    match (sum(first), sum(second)) {
+        (Some(sum), _) => sum != checksum(&format!("{second}{rest}")),
+        (None, Some(sum)) => sum != checksum(&format!("{first}{rest}")),
+        (None, None) => true,
+    }
 }
 
 #[cfg(test)]
@@ -35,5 +50,8 @@ mod tests {
         assert!(!is_edited(&sealed.replace('\n', "\r\n")));
         assert!(is_edited(&sealed.replace("camera", "Camera")));
         assert!(is_edited("camera {}\n"));
+        let sealed = seal("#", "##RenderMan RIB-Structure 1.1\nversion 3.03\n");
+        assert!(sealed.starts_with("##RenderMan RIB-Structure 1.1\n# lichtenberg-seal"));
+        assert!(!is_edited(&sealed) && is_edited(&sealed.replace("3.03", "3.04")));
     }
 }

@@ -22,7 +22,8 @@ impl ShapeFiles for Folder {
             Some(file) => self.read(file)?,
             None => Self::Embedded("".into()).read(FONT)?,
         };
-        letter_outlines(text, &bytes).map_err(|error| format!("cannot use the font `{}`: {error}", file.unwrap_or(FONT)))
+        letter_outlines(text, &bytes)
+            .map_err(|error| format!("cannot use the font `{}`: {error}", file.unwrap_or(FONT)))
     }
 
     fn picture_outlines(&self, file: &str, threshold: f64, bright: bool) -> Result<Rings, String> {

@@ -357,7 +357,8 @@ mod tests {
     #[test]
     fn surfaces_are_closed_manifolds() {
         for corners in 1..=255_u32 {
-            let surface = Surface::extract([2, 2, 2], |[x, y, z]| corners >> (x | y << 1 | z << 2) & 1 == 1, |_, _, _| 0.3);
+            let surface =
+                Surface::extract([2, 2, 2], |[x, y, z]| corners >> (x | y << 1 | z << 2) & 1 == 1, |_, _, _| 0.3);
             assert!(surface.is_closed_manifold() && surface.volume() > 0.0, "{corners:08b}");
         }
     }
@@ -380,11 +381,15 @@ mod tests {
     #[test]
     fn a_ball_has_its_volume_and_keeps_it() {
         let d = |at: [u32; 3]| (DVec3::from_array(at.map(f64::from)) - DVec3::splat(20.0)).length() - 15.0;
-        let mut surface = Surface::extract([41; 3], |at| d(at) < 0.0, |at, axis, up| {
-            let mut other = at;
-            other[axis] = other[axis].wrapping_add_signed(if up { 1 } else { -1 });
-            d(at) / (d(at) - d(other))
-        });
+        let mut surface = Surface::extract(
+            [41; 3],
+            |at| d(at) < 0.0,
+            |at, axis, up| {
+                let mut other = at;
+                other[axis] = other[axis].wrapping_add_signed(if up { 1 } else { -1 });
+                d(at) / (d(at) - d(other))
+            },
+        );
         let exact = 4.0 / 3.0 * std::f64::consts::PI * 15.0_f64 * 15.0 * 15.0;
         assert!((surface.volume() / exact - 1.0).abs() < 0.005, "{}", surface.volume() / exact);
         surface.smooth(10);

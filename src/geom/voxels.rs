@@ -20,11 +20,9 @@ impl Voxels {
     #[must_use]
     pub fn new(size: [u32; 3], spacing: f64, low: DVec3, is_inside: &[bool]) -> Self {
         let size = size.map(|s| s as usize);
-        let [out, within] = rayon::join(
-            || squared_distances(size, |i| is_inside[i]),
-            || squared_distances(size, |i| !is_inside[i]),
-        )
-        .into();
+        let [out, within] =
+            rayon::join(|| squared_distances(size, |i| is_inside[i]), || squared_distances(size, |i| !is_inside[i]))
+                .into();
         let distances = out
             .into_par_iter()
             .zip(within)

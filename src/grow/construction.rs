@@ -192,7 +192,9 @@ fn sections(shape: &Shape, is_plane: bool) -> Vec<Vec<DVec3>> {
             p
         };
         let value = |x: u32, y: u32| shape.distance(place(f64::from(x), f64::from(y)));
-        lines.extend(contours(size, value).into_iter().map(|line| line.into_iter().map(|p| place(p.x, p.y)).collect::<Vec<_>>()));
+        lines.extend(
+            contours(size, value).into_iter().map(|line| line.into_iter().map(|p| place(p.x, p.y)).collect::<Vec<_>>()),
+        );
     }
     lines
 }

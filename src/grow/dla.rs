@@ -164,7 +164,8 @@ impl Cluster {
         for z in -depth..=depth {
             for y in -3..=3 {
                 for x in -3..=3 {
-                    let mut name = self.index([at[0] + x, at[1] + y, at[2] + z]).map_or(u32::MAX, |cell| self.heads[cell]);
+                    let mut name =
+                        self.index([at[0] + x, at[1] + y, at[2] + z]).map_or(u32::MAX, |cell| self.heads[cell]);
                     while name != u32::MAX {
                         // Where the distance is 1: two radii.
                         let d = self.places[name as usize] - p;
@@ -251,7 +252,8 @@ impl DlaSpec {
         let mut p = DVec3::ZERO;
         (0..dimensions).for_each(|axis| p[axis] = random.random::<f64>() * sides[axis]);
         // Sides by their size.
-        let face = |axis: usize| (0..dimensions).filter(|&other| other != axis).map(|other| sides[other]).product::<f64>();
+        let face =
+            |axis: usize| (0..dimensions).filter(|&other| other != axis).map(|other| sides[other]).product::<f64>();
         let mut left = random.random::<f64>() * (0..dimensions).map(face).sum::<f64>();
         let mut axis = 0;
         while axis + 1 < dimensions && left >= face(axis) {
@@ -271,9 +273,7 @@ impl DlaSpec {
     ) -> Option<(DVec3, u32)> {
         let steps = lattice.steps();
         let far = LOST * (cluster.radius + 3.0);
-        let is_open = |at: [i64; 3]| {
-            cluster.index(at).is_none() || lattice.is_open(lattice.node(at.map(|c| c as u32)))
-        };
+        let is_open = |at: [i64; 3]| cluster.index(at).is_none() || lattice.is_open(lattice.node(at.map(|c| c as u32)));
         let mut at = cluster.cell(self.start(cluster, random));
         for _ in 0..MOST_STEPS {
             if cluster.pyramid.is_near(clamped(at, cluster.size), 0) && cluster.particle(at).is_none() {

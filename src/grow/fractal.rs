@@ -101,9 +101,9 @@ impl Nearness {
             let from = lattice.coordinates(nearest);
             lattice.edges(node, |edge| {
                 let to = lattice.coordinates(edge.node);
-                let squared = (0..3).map(|axis| from[axis].abs_diff(to[axis])).fold(0_u32, |sum, d| {
-                    sum.saturating_add(d.saturating_mul(d))
-                });
+                let squared = (0..3)
+                    .map(|axis| from[axis].abs_diff(to[axis]))
+                    .fold(0_u32, |sum, d| sum.saturating_add(d.saturating_mul(d)));
                 if squared < self.squared[edge.cell] && squared <= most {
                     (self.nearest[edge.cell], self.squared[edge.cell]) = (nearest, squared);
                     queue.push_back(edge.node);
@@ -124,7 +124,8 @@ impl Step {
         seed: u64,
         progress: &Progress,
     ) -> Result<(Skeleton, u64), GrowError> {
-        let wrong = |key: &str, message: String| GrowError::Scene { place: format!("grow.{}.{key}", self.name), message };
+        let wrong =
+            |key: &str, message: String| GrowError::Scene { place: format!("grow.{}.{key}", self.name), message };
         let spacing = lattice.window().spacing;
         let distances = fractal.distances(spacing);
         if distances.is_empty() {
@@ -206,7 +207,13 @@ impl Step {
                     for &(node, weight) in way.iter().rev() {
                         let cost = skeleton.nodes[parent as usize].cost + range.real(u64::from(weight));
                         let position = lattice.position(node);
-                        let made = SkeletonNode { position, parent: Some(parent), cost, age: cost, ..blank(iteration, set.class) };
+                        let made = SkeletonNode {
+                            position,
+                            parent: Some(parent),
+                            cost,
+                            age: cost,
+                            ..blank(iteration, set.class)
+                        };
                         parent = skeleton.nodes.len() as u32;
                         known[lattice.cell(node)] = parent;
                         skeleton.nodes.push(made);

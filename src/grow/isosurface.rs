@@ -73,7 +73,10 @@ pub fn isosurface(
             let dimensions = if is_flat { 2 } else { 3 };
             let samples = (0..dimensions).map(|axis| bounds.size()[axis] / spacing + 5.0).product::<f64>();
             if samples.is_nan() || samples > MOST_SAMPLES {
-                return Err(wrong("spacing", format!("{samples:.1e} samples are too many ({MOST_SAMPLES:.0e} at most): use a wider spacing")));
+                return Err(wrong(
+                    "spacing",
+                    format!("{samples:.1e} samples are too many ({MOST_SAMPLES:.0e} at most): use a wider spacing"),
+                ));
             }
             let margin = 2.0 * spacing;
             let window = Window::new(bounds.min - margin, bounds.max + margin, spacing, dimensions as u32)
@@ -81,16 +84,26 @@ pub fn isosurface(
             let field = distances(window, skeletons);
             let surface = level(window, is_flat, spec.smooth, |cell| f64::from(field[cell]));
             if surface.triangles.is_empty() {
-                return Err(wrong("spacing", format!("nothing is as wide as the spacing, {spacing}: use a narrower one")));
+                return Err(wrong(
+                    "spacing",
+                    format!("nothing is as wide as the spacing, {spacing}: use a narrower one"),
+                ));
             }
             Ok(surface)
         }
         Distance::Cost => {
             let Some(space) = space else {
-                return Err(wrong("of", "path costs are measured on the lattice that the first step grew in: it has scattered nodes".to_owned()));
+                return Err(wrong(
+                    "of",
+                    "path costs are measured on the lattice that the first step grew in: it has scattered nodes"
+                        .to_owned(),
+                ));
             };
             if spec.spacing.is_some() {
-                return Err(wrong("spacing", "path costs are measured on the lattice that the step grew in, with its spacing".to_owned()));
+                return Err(wrong(
+                    "spacing",
+                    "path costs are measured on the lattice that the step grew in, with its spacing".to_owned(),
+                ));
             }
             let surface = match space.neighbours.count() {
                 4 => by_cost::<4>(space, skeletons, spec, seed, progress)?,
@@ -194,7 +207,9 @@ fn by_cost<const N: usize>(
     let value = |cell: usize| if costs[cell] == u64::MAX { f64::MAX } else { costs[cell] as f64 - threshold };
     let surface = level(space.window, lattice.is_plane(), spec.smooth, value);
     if surface.triangles.is_empty() {
-        return Err(wrong("no node lies within the width of the limbs: make them wider, or the spacing narrower".to_owned()));
+        return Err(wrong(
+            "no node lies within the width of the limbs: make them wider, or the spacing narrower".to_owned(),
+        ));
     }
     Ok(surface)
 }
@@ -220,8 +235,8 @@ fn level(window: Window, is_flat: bool, smooth: u32, value: impl Fn(usize) -> f6
         let placed: Vec<Vec<DVec2>> = rings.iter().map(|ring| ring.iter().map(place).collect()).collect();
         return fill(&placed);
     }
-    let mut surface = Surface::extract(window.size, |at| value(cell(at)) < 0.0, crossing)
-        .map(|p| low + p * window.spacing);
+    let mut surface =
+        Surface::extract(window.size, |at| value(cell(at)) < 0.0, crossing).map(|p| low + p * window.spacing);
     surface.smooth(smooth);
     surface
 }

@@ -40,7 +40,7 @@ pub use rounds::{Repeat, Rounds, Target, Turn};
 pub use scatter_space::{Clusters, ScatterSpace};
 pub use space::{LatticeSpace, Space};
 pub use spec::{
-    EndpointSpec, FromSpec, LatticeSpec, MethodSpec, NearSpec, NodesSpec, ScatterSpec, SpaceSpec, SpreadSpec, StepSpec, Toward,
-    Unreached,
+    EndpointSpec, FromSpec, LatticeSpec, MethodSpec, NearSpec, NodesSpec, ScatterSpec, SpaceSpec, SpreadSpec, StepSpec,
+    Toward, Unreached,
 };
 pub use step::{GrowError, Grown, Method, Part, Source, Step};

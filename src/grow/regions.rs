@@ -101,8 +101,7 @@ impl<const N: usize> Labelled<'_, N> {
             let size = [high[0] + 1 - low[0], high[1] + 1 - low[1]];
             let at = |x: u32, y: u32| [x + low[0], y + low[1], 0];
             let mut rings = if spec.gap > 0.0 {
-                let inside: Vec<bool> =
-                    (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| is_in(at(x, y)))).collect();
+                let inside: Vec<bool> = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| is_in(at(x, y)))).collect();
                 drawn_in(size, &inside, spec.gap * 0.5 / spacing)
             } else {
                 rings(size, |x, y| is_in(at(x, y)), |[x, y], axis, up| self.crossing(at(x, y), axis, up))
@@ -194,7 +193,8 @@ impl Step {
         seed: u64,
         progress: &Progress,
     ) -> Result<(Regions, u64), GrowError> {
-        let wrong = |key: &str, message: String| GrowError::Scene { place: format!("grow.{}.{key}", self.name), message };
+        let wrong =
+            |key: &str, message: String| GrowError::Scene { place: format!("grow.{}.{key}", self.name), message };
         if generators.len() >= usize::from(NONE) {
             return Err(wrong("from", format!("{} generators are too many: {} at most", generators.len(), NONE - 1)));
         }
@@ -249,9 +249,8 @@ impl Step {
         // Coarse nodes next to another region, or to nothing; and those next to these.
         let is_border = around(wide.size, |cell, other| coarse.nodes[cell].0 != coarse.nodes[other].0, true);
         let is_near = around(wide.size, |_, other| is_border[other], false);
-        let corners = |at: [u32; 3]| {
-            (0..8_u32).map(move |corner| [0, 1, 2].map(|axis| (at[axis] + (corner >> axis & 1)) / 2))
-        };
+        let corners =
+            |at: [u32; 3]| (0..8_u32).map(move |corner| [0, 1, 2].map(|axis| (at[axis] + (corner >> axis & 1)) / 2));
         let at = |cell: u64| {
             let [x, y, _] = size.map(u64::from);
             [cell % x, cell / x % y, cell / (x * y)].map(|c| c as u32)
@@ -283,8 +282,8 @@ impl Step {
         };
         let later: Vec<(Node, u64)> =
             lattice.nodes().filter_map(|node| Some((node, doubled(coarse.nodes[sure(node)?].1)))).collect();
-        let found = plan_delayed(&lattice, &[], &later, Goal::Everything, progress)
-            .map_err(|error| self.plan_error(error))?;
+        let found =
+            plan_delayed(&lattice, &[], &later, Goal::Everything, progress).map_err(|error| self.plan_error(error))?;
         let mut nodes = found.carry(
             lattice.nodes(),
             (NONE, 0),

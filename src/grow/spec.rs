@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{ClustersSpec, DbmSpec, DlaSpec, FractalSpec, GrammarSpec, RefineSpec, RegionsSpec, RepeatSpec, Space, Step};
+use super::{
+    ClustersSpec, DbmSpec, DlaSpec, FractalSpec, GrammarSpec, RefineSpec, RegionsSpec, RepeatSpec, Space, Step,
+};
 use crate::geom::ShapeSpec;
 use crate::graph::{FieldSpec, Neighbours, Weights};
 use crate::math::{PerRound, Point, Ref};

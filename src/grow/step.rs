@@ -6,8 +6,8 @@ use rustc_hash::FxHashMap;
 
 use super::construction::{Mark, MarkKind, construction};
 use super::{
-    Dbm, DlaSpec, Endpoints, FractalSpec, LatticeSpace, Near, Placement, Refine, Regions, RegionsSpec, Repeat, SIDE, Solver,
-    Space, Unreached,
+    Dbm, DlaSpec, Endpoints, FractalSpec, LatticeSpace, Near, Placement, Refine, Regions, RegionsSpec, Repeat, SIDE,
+    Solver, Space, Unreached,
 };
 use crate::geom::Shape;
 use crate::graph::{Graph, Lattice, LatticeError, Node};

@@ -1,7 +1,7 @@
 //! Objects: balls and the limbs between them, or a mesh; and where they stand.
 
-use crate::geom::{Bounds, vertex_normals};
 use super::ThornsSpec;
+use crate::geom::{Bounds, vertex_normals};
 use crate::math::{DMat3, DVec3, Degrees};
 
 /// A sphere with what was known of its place in the skeleton.

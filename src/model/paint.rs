@@ -43,7 +43,8 @@ impl Object {
         let mut is_root = vec![true; self.balls.len()];
         self.segments.iter().for_each(|&[_, b]| is_root[b as usize] = false);
         let roots = (0..self.balls.len()).filter(|&i| is_root[i]);
-        let point = |i: usize| DVec3::new(self.balls[i].centre.x, self.balls[i].centre[if is_flat { 2 } else { 1 }], 0.0);
+        let point =
+            |i: usize| DVec3::new(self.balls[i].centre.x, self.balls[i].centre[if is_flat { 2 } else { 1 }], 0.0);
         let bounds = roots.fold(Bounds::EMPTY, |b, i| b.union(Bounds { min: point(i), max: point(i) }));
         let size = bounds.size().max(DVec3::splat(1e-9));
         let [width, height] = picture.size;
@@ -55,7 +56,8 @@ impl Object {
             picture.pixels[cell].map(|value| libm::round(to_srgb(f64::from(value)) * f64::from(steps - 1)) as u8)
         };
         // Parents come before children.
-        let mut colours: Vec<[u8; 3]> = (0..self.balls.len()).map(|i| if is_root[i] { step(i) } else { [0; 3] }).collect();
+        let mut colours: Vec<[u8; 3]> =
+            (0..self.balls.len()).map(|i| if is_root[i] { step(i) } else { [0; 3] }).collect();
         self.segments.iter().for_each(|&[a, b]| colours[b as usize] = colours[a as usize]);
         let mut parts: BTreeMap<[u8; 3], Self> = BTreeMap::new();
         let mut renamed = vec![0; self.balls.len()];

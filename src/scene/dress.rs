@@ -47,7 +47,7 @@ pub(super) fn dress(
             let name = format!("{} {}", base.0, hex(colour));
             let known = materials.iter().position(|(known, _)| *known == name);
             let index = known.unwrap_or_else(|| {
-                materials.push((name, Material { colour, ..base.1.clone() }));
+                materials.push((name, Material { colour, ..base.1 }));
                 materials.len() - 1
             });
             parts.push(Object { material: index, ..part });
@@ -95,7 +95,8 @@ fn solids(scene: &Resolved, plan: &ObjectPlan, grown: &[Grown]) -> Result<Vec<Ob
         .filter_map(|&step| grown[step].regions.as_ref())
         .flat_map(|regions: &Regions| &regions.surfaces)
         .collect();
-    let bounds = surfaces.iter().flat_map(|s| &s.points).fold(Bounds::EMPTY, |b, &p| b.union(Bounds { min: p, max: p }));
+    let bounds =
+        surfaces.iter().flat_map(|s| &s.points).fold(Bounds::EMPTY, |b, &p| b.union(Bounds { min: p, max: p }));
     let mut foot = bounds.centre();
     foot[if scene.is_flat { 1 } else { 2 }] = bounds.min[if scene.is_flat { 1 } else { 2 }];
     let mut parts = Vec::new();

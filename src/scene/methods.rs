@@ -112,7 +112,8 @@ impl Resolver<'_> {
             MethodSpec::Fractal(fractal) => {
                 for (key, set) in &spec.to {
                     if set.count.is_none() || set.near.is_some() || set.shell.is_some() {
-                        let message = "fractal placement places endpoints itself: it needs `count`, and no `near` or `shell`";
+                        let message =
+                            "fractal placement places endpoints itself: it needs `count`, and no `near` or `shell`";
                         self.wrong(&format!("{place}.to.{key}"), message.to_owned());
                     }
                 }

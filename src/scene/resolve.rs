@@ -7,8 +7,8 @@ use super::methods::Names;
 use super::tree::Entry;
 use super::{Claim, LightsSpec, Mistake, ObjectSpec, Scene, SceneError, Source};
 use crate::files::{
-    Folder, decode_grey, decode_linear, decode_mesh, decode_panorama, decode_plate, decode_sketch, leaf_names, resize_grey,
-    resize_plate,
+    Folder, decode_grey, decode_linear, decode_mesh, decode_panorama, decode_plate, decode_sketch, leaf_names,
+    resize_grey, resize_plate,
 };
 use crate::geom::{Shape, ShapeSpec};
 use crate::grow::{MarkKind, MethodSpec, Space, SpaceSpec, Step};
@@ -168,14 +168,12 @@ pub(super) fn resolve(
         scene.object.iter().map(|(name, spec)| r.object(name, spec, &materials, is_flat)).collect();
     let lights = r.lights(is_flat);
     for (name, claim) in &scene.claim {
-        for (key, step) in
-            [
-                ("of", Some(&claim.of)),
-                ("more_than", claim.more_than.as_ref()),
-                ("as_of", claim.as_of.as_ref()),
-                ("with", claim.with.as_ref()),
-            ]
-        {
+        for (key, step) in [
+            ("of", Some(&claim.of)),
+            ("more_than", claim.more_than.as_ref()),
+            ("as_of", claim.as_of.as_ref()),
+            ("with", claim.with.as_ref()),
+        ] {
             if let Some(step) = step {
                 r.find(&format!("claim.{name}.{key}"), "step", step, scene.grow.keys());
             }
@@ -409,10 +407,12 @@ impl Resolver<'_> {
         let solids = spec.grow.iter().filter(|step| is_solid(step)).count();
         let is_surface = spec.skin == Skin::Surface;
         if solids > 0 && !(is_surface && solids == spec.grow.len()) {
-            let message = "regions have no limbs: their objects have `skin = \"surface\"`, and no other steps".to_owned();
+            let message =
+                "regions have no limbs: their objects have `skin = \"surface\"`, and no other steps".to_owned();
             self.wrong(&format!("{place}.skin"), message);
         } else if is_surface && solids == 0 {
-            let message = "the skin `surface` is that of regions: limbs have `cones`, `spheres`, `mesh` or `isosurface`";
+            let message =
+                "the skin `surface` is that of regions: limbs have `cones`, `spheres`, `mesh` or `isosurface`";
             self.wrong(&format!("{place}.skin"), message.to_owned());
         }
         let is_limbs = matches!(spec.skin, Skin::Cones | Skin::Spheres) && !spec.grow.is_empty();

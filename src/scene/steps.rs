@@ -9,8 +9,8 @@ use crate::files::{decode_grey, decode_sketch};
 use crate::geom::{Bounds, Shape, Strokes};
 use crate::graph::{CostField, FieldSpec, FieldUse, HeightEnd, Joining, Measure, MeasureSpec, Sectors};
 use crate::grow::{
-    Clusters, EndpointSpec, Endpoints, FromSpec, LatticeSpace, LatticeSpec, Near, NearSpec, NodesSpec, Part,
-    Placement, ScatterSpace, ScatterSpec, Source as Generators, Space, SpaceSpec, Step, StepSpec,
+    Clusters, EndpointSpec, Endpoints, FromSpec, LatticeSpace, LatticeSpec, Near, NearSpec, NodesSpec, Part, Placement,
+    ScatterSpace, ScatterSpec, Source as Generators, Space, SpaceSpec, Step, StepSpec,
 };
 use crate::math::{DVec2, DVec3, PerRound, Point};
 use crate::skeleton::Width;

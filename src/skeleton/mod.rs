@@ -26,5 +26,5 @@ pub use plant::{Part, Plant};
 pub use relate::{apart, crossings, floating, shared_ends};
 pub use smooth::smooth;
 pub use spline::{bend, overlap};
-pub use width::{ByLength, PerClass, Pipe, Taper, Width};
 pub use symmetry::SymmetrySpec;
+pub use width::{ByLength, PerClass, Pipe, Taper, Width};

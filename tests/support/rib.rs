@@ -124,9 +124,11 @@ fn arguments(tokens: &[Token]) -> Arguments {
             }
             Token::Open => {
                 let end = i + tokens[i..].iter().position(|t| *t == Token::Close).expect("a closed list");
-                let numbers = tokens[i + 1..end].iter().filter_map(|t| if let Token::Number(n) = t { Some(*n) } else { None });
+                let numbers =
+                    tokens[i + 1..end].iter().filter_map(|t| if let Token::Number(n) = t { Some(*n) } else { None });
                 let numbers: Vec<f64> = numbers.collect();
-                let text = tokens[i + 1..end].iter().find_map(|t| if let Token::Text(t) = t { Some(t.clone()) } else { None });
+                let text =
+                    tokens[i + 1..end].iter().find_map(|t| if let Token::Text(t) = t { Some(t.clone()) } else { None });
                 match name.take() {
                     Some(name) => {
                         if let Some(text) = text {
@@ -175,7 +177,8 @@ pub fn read(text: &str, archive: &str) -> World {
             taken.extend(queue.pop());
         }
         let given = arguments(&taken);
-        let all = || -> Vec<f64> { given.numbers.iter().copied().chain(given.lists.iter().flatten().copied()).collect() };
+        let all =
+            || -> Vec<f64> { given.numbers.iter().copied().chain(given.lists.iter().flatten().copied()).collect() };
         let mut made: Option<Primitive> = None;
         match request.as_str() {
             "ReadArchive" => {
@@ -239,8 +242,9 @@ pub fn read(text: &str, archive: &str) -> World {
             "ObjectEnd" => state = recording.take().expect("an object to end").1,
             "ObjectInstance" => {
                 let matrix = state.matrix;
+                let object = world.objects.last_mut().expect("an object");
+                (object.1, object.2) = (state.surface.clone(), state.colour);
                 for primitive in retained[&(all()[0] as u64)].clone() {
-                    let object = world.objects.last_mut().expect("an object");
                     object.3.push(moved(primitive, &matrix));
                 }
             }
@@ -279,8 +283,8 @@ pub fn read(text: &str, archive: &str) -> World {
                 assert!(given.named.get("Cs").is_none_or(|list| list.len() == points.len() * 3));
                 made = Some(Primitive::Polygons { points, normals, faces });
             }
-            "version" | "Option" | "Display" | "Quantize" | "Exposure" | "PixelSamples" | "PixelFilter" | "ShadingRate"
-            | "MakeShadow" => {}
+            "Displacement" | "version" | "Option" | "Display" | "Quantize" | "Exposure" | "PixelSamples"
+            | "PixelFilter" | "ShadingRate" | "MakeShadow" => {}
             _ => panic!("{request} is not in the portable subset"),
         }
         if let Some(primitive) = made {
