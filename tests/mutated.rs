@@ -48,6 +48,14 @@ fn small(text: &str) -> String {
         .replace("count = 1400", "count = 30")
         .replace("count = 220", "count = 30")
         .replace("count = 900", "count = 30")
+        .replace("count = 30000", "count = 300")
+        .replace("count = 26000", "count = 300")
+        .replace("count = 1900", "count = 90")
+        .replace("particles = 25000", "particles = 300")
+        .replace("particles = 5000", "particles = 100")
+        .replace("nodes.lattice = { spacing = 1,", "nodes.lattice = { spacing = 4,")
+        .replace("nodes.lattice = { spacing = 0.5,", "nodes.lattice = { spacing = 2,")
+        .replace("nodes.lattice = { spacing = 0.14,", "nodes.lattice = { spacing = 0.4,")
 }
 
 proptest! {

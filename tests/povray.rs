@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use lichtenberg::files::{Rgba, decode_png};
 use rayon::prelude::*;
-use support::{lichtenberg, require_povray, run_in, scene_names, succeed_in, text};
+use support::{lichtenberg, require_povray, run_in, scene_names, small_variant, succeed_in, text};
 
 /// Runs povray itself on `scene` in `folder`; it must succeed without a warning.
 fn povray(folder: &Path, scene: &str, extra: &[&str]) -> Rgba {
@@ -40,8 +40,8 @@ fn every_scene_renders_without_a_warning() {
     let names: Vec<String> = scene_names().into_iter().filter(|name| !name.starts_with("papers/2012")).collect();
     names.par_iter().for_each(|name| {
         let folder = tempfile::tempdir().unwrap();
-        let output =
-            run_in(folder.path(), &["render", name, "--with", "povray", "--size", "160x120", "-o", "{scene}.png"]);
+        let common = ["render", name, "--with", "povray", "--size", "160x120", "-o", "{scene}.png"];
+        let output = run_in(folder.path(), &[&common[..], &small_variant(name)].concat());
         let said = text(&output.stderr);
         assert!(output.status.success() && !said.contains("Warning"), "{name}: {said}");
         let path = folder.path().join(text(&output.stdout).trim());

@@ -14,7 +14,7 @@ use lichtenberg::math::Progress;
 use lichtenberg::scene::{grow, model};
 use lichtenberg::trace::{Look, View, World, render};
 use rayon::prelude::*;
-use support::{embedded, lichtenberg, require_povray, run_in, scene_names, succeed_in, text};
+use support::{embedded, lichtenberg, require_povray, run_in, scene_names, small_variant, succeed_in, text};
 
 fn picture(path: &Path) -> Rgba {
     decode_png(&fs::read(path).unwrap()).unwrap()
@@ -61,8 +61,10 @@ fn agrees_with_povray_to_the_pixel() {
         .map(|(name, samples)| {
             let folder = tempfile::tempdir().unwrap();
             let common = ["render", name, "--look", "exact", "--size", "160x120", "--samples", samples];
-            succeed_in(folder.path(), &[&common[..], &["-o", "ours.png"]].concat());
-            let output = run_in(folder.path(), &[&common[..], &["--with", "povray", "-o", "theirs.png"]].concat());
+            let small = small_variant(name);
+            succeed_in(folder.path(), &[&common[..], &small, &["-o", "ours.png"]].concat());
+            let output =
+                run_in(folder.path(), &[&common[..], &small, &["--with", "povray", "-o", "theirs.png"]].concat());
             let said = text(&output.stderr);
             assert!(output.status.success() && !said.contains("Warning"), "{name}: {said}");
             let [ours, theirs] = ["ours.png", "theirs.png"].map(|f| picture(&folder.path().join(f)));

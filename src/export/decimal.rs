@@ -37,6 +37,23 @@ pub(super) fn push_number(out: &mut Vec<u8>, x: f64, digits: Digits, scale: f64)
     out.extend_from_slice(&text[at..]);
 }
 
+/// [`push_number`] with a digit before the point, as every reader takes it.
+pub(super) fn push_plain(out: &mut Vec<u8>, x: f64, digits: Digits, scale: f64) {
+    let start = out.len();
+    push_number(out, x, digits, scale);
+    let at = start + usize::from(out[start] == b'-');
+    if out[at] == b'.' {
+        out.insert(at, b'0');
+    }
+}
+
+/// `x` as text with a digit before the point.
+pub(super) fn plain_number(x: f64, digits: Digits) -> String {
+    let mut out = Vec::new();
+    push_plain(&mut out, x, digits, digits.scale());
+    out.into_iter().map(char::from).collect()
+}
+
 /// Appends `<x,y,z>`.
 pub(super) fn push_vector(out: &mut Vec<u8>, p: DVec3, digits: Digits, scale: f64) {
     for (c, before) in p.to_array().into_iter().zip([b'<', b',', b',']) {
@@ -68,6 +85,7 @@ mod tests {
     fn says_no_more_than_it_must() {
         let texts: Vec<_> =
             [0.0, 1.0, -0.25, 1200.0, 0.000_01, 12.345_678, -0.000_001].map(|x| number(x, Digits(5))).to_vec();
+        assert_eq!([0.5, -0.25, 3.0].map(|x| plain_number(x, Digits(5))), ["0.5", "-0.25", "3"]);
         assert_eq!(texts, ["0", "1", "-.25", "1200", ".00001", "12.34568", "0"].map(|t| t.replace("-0", "0")));
     }
 

@@ -2,14 +2,10 @@
 
 use std::io::{self, Write};
 
+use super::decimal::plain_number;
 use super::identifier::plain;
 use crate::math::DVec3;
 use crate::model::{Digits, Model, Object};
-
-/// A number as every reader takes it: with a digit before the point.
-fn plain_number(x: f64, digits: Digits) -> String {
-    format!("{x:.*}", digits.0 as usize)
-}
 
 /// Why a model is no mesh.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

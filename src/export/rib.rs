@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use super::decimal::number;
+use super::decimal::plain_number as number;
 use super::identifier::plain;
 use super::rib_body::{MATRIX, write_object};
 use super::rib_sheets::{Sheet, sheets};

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::decimal::{number, push_number};
+use super::decimal::{plain_number as number, push_plain as push_number};
 use super::identifier::plain;
 use super::rib::{RibOptions, RibShadows, triple};
 use crate::geom::frustum;

@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::decimal::number;
+use super::decimal::plain_number as number;
 use super::rib::{PLAIN, colour, ray, triple};
 use crate::math::{Colour, DVec3};
 use crate::model::{Camera, Digits, FADE, Light, Model, Sky};

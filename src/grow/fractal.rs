@@ -80,11 +80,13 @@ struct Nearness {
     nearest: Vec<Node>,
     /// Squared distance in steps.
     squared: Vec<u32>,
+    /// The nodes that have one.
+    met: Vec<Node>,
 }
 
 impl Nearness {
     fn new(cells: usize) -> Self {
-        Self { nearest: vec![Node(0); cells], squared: vec![u32::MAX; cells] }
+        Self { nearest: vec![Node(0); cells], squared: vec![u32::MAX; cells], met: Vec::new() }
     }
 
     /// Takes in what has `grown` since, up to a squared distance. Each node hands on which node is nearest to it, along
@@ -93,6 +95,9 @@ impl Nearness {
         let mut queue: VecDeque<Node> = VecDeque::new();
         for &node in grown {
             let cell = lattice.cell(node);
+            if self.squared[cell] == u32::MAX {
+                self.met.push(node);
+            }
             (self.nearest[cell], self.squared[cell]) = (node, 0);
             queue.push_back(node);
         }
@@ -105,6 +110,9 @@ impl Nearness {
                     .map(|axis| from[axis].abs_diff(to[axis]))
                     .fold(0_u32, |sum, d| sum.saturating_add(d.saturating_mul(d)));
                 if squared < self.squared[edge.cell] && squared <= most {
+                    if self.squared[edge.cell] == u32::MAX {
+                        self.met.push(edge.node);
+                    }
                     (self.nearest[edge.cell], self.squared[edge.cell]) = (nearest, squared);
                     queue.push_back(edge.node);
                 }
@@ -162,13 +170,8 @@ impl Step {
             near.grow(lattice, &fresh, most as u32);
             fresh.clear();
             let least = if fractal.place == Vicinity::At { ((steps - 0.5) * (steps - 0.5)).max(1.0) } else { 1.0 };
-            let room: Vec<Node> = lattice
-                .nodes()
-                .filter(|&node| {
-                    let squared = near.squared[lattice.cell(node)];
-                    squared < u32::MAX && (least..=most).contains(&f64::from(squared))
-                })
-                .collect();
+            let fits = |node: &Node| (least..=most).contains(&f64::from(near.squared[lattice.cell(*node)]));
+            let room: Vec<Node> = near.met.iter().copied().filter(fits).collect();
             let mut taken = vec![false; if self.endpoints.len() > 1 { lattice.cells() } else { 0 }];
             for set in &self.endpoints {
                 let Placement::Random { count, inside, apart, stream, .. } = &set.placement else { continue };

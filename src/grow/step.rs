@@ -153,7 +153,17 @@ impl Step {
                 let across: u64 = space.window.size.iter().map(|&s| u64::from(s)).sum();
                 // Paths share most of their nodes; they can never have more than the lattice has.
                 let skeleton = paths.saturating_mul(across).min(space.window.nodes()) * NODE_BYTES;
-                space.bytes_needed().saturating_add(skeleton)
+                // What methods keep of each node beside the search.
+                let each = match &self.method {
+                    Method::Paths | Method::Dbm(_) => 0,
+                    // The nearest node and how far it is, and the skeleton's node.
+                    Method::Fractal(_) => 12,
+                    Method::Dla(_) => 5,
+                    // A region and a cost, carried along paths, and those of lattices twice as fine.
+                    Method::Regions(regions) => 20_u64 << (3 * regions.refine),
+                };
+                let kept = space.window.nodes().saturating_mul(each);
+                space.bytes_needed().saturating_add(skeleton).saturating_add(kept)
             }
         }
     }

@@ -48,6 +48,19 @@ pub fn embedded(name: &str, overrides: &[(&str, &str)]) -> Resolved {
     load(&source, &overrides).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// What makes a small variant of a heavy scene, as arguments: povray parses thousands of strands a second, and lights them by
+/// the hundred.
+pub fn small_variant(name: &str) -> Vec<&'static str> {
+    let change = match name {
+        "papers/2007-fig15" | "moss" => "grow.moss.to.tips.count=5000",
+        "papers/2007-fig16" | "papers/2007-fig10" => "space.block.nodes.lattice.spacing=2",
+        "cracked-ground" => "space.mud.nodes.lattice.spacing=0.28",
+        "fur" => "object.fur.tile.count=[2, 1]",
+        _ => return Vec::new(),
+    };
+    vec!["--set", change]
+}
+
 /// The real povray; without it the tests fail with a hint, they are not skipped.
 pub fn require_povray() {
     let found = Command::new("povray").arg("--version").output();
