@@ -16,6 +16,6 @@ displacement thorns(float height = 0.1; float radius = 0.05; float apart = 0.2;)
         }
     }
     float rise = 1 - smoothstep(0, radius / apart, far - 0.1);
-    N = calculatenormal(P + normalize(N) * height * rise * rise);
     P += normalize(N) * height * rise * rise;
+    N = calculatenormal(P);
 }

@@ -124,6 +124,28 @@ fn refinement_keeps_the_rock() {
     assert!((fine.volume() / coarse.volume() - 1.0).abs() < 0.1, "{} {}", fine.volume(), coarse.volume());
 }
 
+/// Regions a node or two across are refined too, and a gap wider than a region leaves none of it.
+#[test]
+fn thin_regions_do_no_harm() {
+    let flat = |by: &str| {
+        let overrides = [
+            ("space.tissue.shape", "{ box = { min = [0, 0], max = [40, 40] } }"),
+            ("grow.cells.from.spread", "{ count = 1000 }"),
+            ("grow.cells.by.regions", by),
+        ];
+        grown("cells", &overrides).0[0].regions.as_ref().unwrap().surfaces.len()
+    };
+    assert!(flat("{ refine = 1 }") > 900);
+    assert!(flat("{ gap = 0.6 }") < 1000);
+    let overrides = [
+        ("space.mud.shape", "{ box = { min = [-2, -2, -2], max = [2, 2, 2] } }"),
+        ("grow.plates.from.spread", "{ count = 300 }"),
+        ("grow.plates.by.regions", "{ gap = 0.5 }"),
+    ];
+    let surfaces = grown("cracked-ground", &overrides).0[0].regions.as_ref().unwrap().surfaces.clone();
+    assert!(surfaces.len() < 300 && surfaces.iter().all(|surface| surface.volume() > 0.0));
+}
+
 /// The lichen keeps out of the rock, and near it.
 #[test]
 fn lichen_stays_on_the_rock() {
@@ -269,6 +291,21 @@ fn bad_input_gets_one_clear_error() {
                 "",
             ),
             "no path reaches the endpoint",
+        ),
+        (flat("letters = { text = \"A\", size = 40, depth = 4 }", paths, ""), "no `depth` in the plane"),
+        (
+            flat(square, "from.at = [[20, 20]]\nby.dla = { particles = 9 }\nwidth.constant = 1", "")
+                .replace("[grow.g]", "forbid.box = { min = [0, 0], max = [5, 5] }\n[grow.g]"),
+            "nothing forbidden",
+        ),
+        (flat(square, paths, "thorns = { length = 1, radius = 1, apart = 1e-5 }"), "primitives are more"),
+        (
+            flat(
+                square,
+                "from.at = [[20, 20]]\nto.all = { count = 900 }\nwidth.constant = 1\nstrands = 1000\nsymmetry = { fold = 360 }",
+                "",
+            ),
+            "nodes are more than",
         ),
         (flat(square, paths, "paint = { file = \"bad.png\" }"), "bad.png"),
         (

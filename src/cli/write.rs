@@ -88,8 +88,14 @@ pub fn write_rib(rib: &Rib<'_>, folder: &Path, name: &str, gzip: bool, force: bo
     let mut written = Written { files: vec![archive], kept: Vec::new() };
     if let Some(shader) = rib.shader() {
         let path = folder.join("thorns.sl");
-        write_bytes(&path, shader.as_bytes()).map_err(|e| failure(&path, e))?;
-        written.files.push(path);
+        // One that differs was edited.
+        let is_kept = !force && fs::read(&path).is_ok_and(|old| old != shader.as_bytes());
+        if is_kept {
+            written.kept.push(path);
+        } else {
+            write_bytes(&path, shader.as_bytes()).map_err(|e| failure(&path, e))?;
+            written.files.push(path);
+        }
     }
     written.keep_or_write(&text, scene, force)?;
     Ok(written)

@@ -26,7 +26,8 @@ pub enum RibShadows {
     None,
     /// Traced by the light `raydistant`, which Pixie has.
     Rays,
-    /// Maps that the scene makes first, read by the light `shadowdistant`, which Aqsis has.
+    /// Maps that the scene makes first, read by the light `shadowdistant`, which Aqsis has. Objects without shadow have one
+    /// there, since maps show all.
     Maps,
 }
 
@@ -233,7 +234,8 @@ impl<'a> Rib<'a> {
 
 /// The surface of a material: a colour and a standard shader.
 fn surface(m: &Material) -> String {
-    let [ka, kd] = [m.ambient, m.diffuse].map(|x| number(x, PLAIN));
+    // The ambient light is 1: light of its own adds to it.
+    let [ka, kd] = [m.ambient + m.emission, m.diffuse].map(|x| number(x, PLAIN));
     let Colour(c) = m.mean_colour();
     if m.diffuse == 0.0 && m.ambient == 0.0 {
         return format!("Color [{}]\nSurface \"constant\"", colour(Colour(c.map(|c| c * m.emission))));

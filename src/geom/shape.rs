@@ -254,6 +254,19 @@ impl Shape {
         }
     }
 
+    /// Is anything in it that outlines enclose, with a depth or without one?
+    #[must_use]
+    pub fn has_outline(&self, is_deep: bool) -> bool {
+        match &*self.0 {
+            Solid::Outlined { depth, .. } => depth.is_some() == is_deep,
+            Solid::Placed { shape, .. } | Solid::Shell { of: shape, .. } => shape.has_outline(is_deep),
+            Solid::Union(of) | Solid::Intersection(of) | Solid::Difference(of) => {
+                of.iter().any(|shape| shape.has_outline(is_deep))
+            }
+            _ => false,
+        }
+    }
+
     /// Is anything in it of which distances are approximate on both sides of its surface?
     fn is_sampled(&self) -> bool {
         match &*self.0 {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::GrowError;
 use crate::graph::{Graph, Lattice, Node};
-use crate::math::{DVec3, Progress, Stream};
+use crate::math::{Cancelled, DVec3, Progress, Stream};
 use crate::skeleton::{Path, Skeleton, SkeletonNode};
 
 /// Diffusion-limited aggregation around the generators, until there are so many particles; those that would stay beyond the
@@ -49,8 +49,12 @@ const CHECK: u32 = 64;
 const LEVELS: usize = 12;
 /// So many in a row that stay beyond the border: the space is full.
 const MOST_LOST: u32 = 1000;
-/// Steps of a walker, at most: then it starts over.
-const MOST_STEPS: u64 = 1 << 40;
+/// Steps of a walker, at most: then it is lost.
+const MOST_STEPS: u64 = 1 << 36;
+/// A walker that could not move so often in a row is stuck.
+const MOST_STUCK: u32 = 4096;
+/// Steps between looks whether to stop.
+const LOOK: u64 = 1 << 20;
 
 /// Which cells hold particles, in cells of the spacing and of twice, four times ... that.
 struct Pyramid {
@@ -220,13 +224,12 @@ impl DlaSpec {
         let (mut made, mut lost) = (0_u32, 0_u32);
         while cluster.places.len() < most {
             let landed = if self.lattice {
-                self.walk_lattice(lattice, &cluster, &mut random)
+                self.walk_lattice(lattice, &cluster, &mut random, progress)?
             } else {
-                self.walk_free(&cluster, &mut random)
+                self.walk_free(&cluster, &mut random, progress)?
             };
-            let Some((p, parent)) = landed else { break };
-            // What would stay beyond the border is lost.
-            if cluster.add(p, Some(parent)) {
+            // What found no place, or would stay beyond the border, is lost.
+            if landed.is_some_and(|(p, parent)| cluster.add(p, Some(parent))) {
                 lost = 0;
             } else {
                 lost += 1;
@@ -270,18 +273,23 @@ impl DlaSpec {
         lattice: &Lattice<N>,
         cluster: &Cluster,
         random: &mut Stream,
-    ) -> Option<(DVec3, u32)> {
+        progress: &Progress,
+    ) -> Result<Option<(DVec3, u32)>, Cancelled> {
         let steps = lattice.steps();
         let far = LOST * (cluster.radius + 3.0);
         let is_open = |at: [i64; 3]| cluster.index(at).is_none() || lattice.is_open(lattice.node(at.map(|c| c as u32)));
         let mut at = cluster.cell(self.start(cluster, random));
-        for _ in 0..MOST_STEPS {
+        let mut stuck = 0;
+        for step in 0..MOST_STEPS {
+            if step % LOOK == 0 {
+                progress.check()?;
+            }
             if cluster.pyramid.is_near(clamped(at, cluster.size), 0) && cluster.particle(at).is_none() {
                 let mut beside = steps.iter().map(|step| [0, 1, 2].map(|axis| at[axis] + i64::from(step[axis])));
                 if let Some(parent) = beside.find_map(|other| cluster.particle(other))
                     && is_open(at)
                 {
-                    return Some((DVec3::from_array(at.map(|c| c as f64)), parent));
+                    return Ok(Some((DVec3::from_array(at.map(|c| c as f64)), parent)));
                 }
             }
             if self.walk == Walk::Fast {
@@ -305,18 +313,31 @@ impl DlaSpec {
             let step = steps[random.random_range(0..N)];
             let next = [0, 1, 2].map(|axis| at[axis] + i64::from(step[axis]));
             let is_inside = self.walk == Walk::Fast || cluster.index(next).is_some();
+            stuck += 1;
             if is_inside && is_open(next) && cluster.particle(next).is_none() {
                 at = next;
+                stuck = 0;
+            }
+            if stuck == MOST_STUCK {
+                return Ok(None);
             }
         }
-        None
+        Ok(None)
     }
 
     /// A walk of a disc (a ball) of diameter 1 until it touches what has grown.
-    fn walk_free(&self, cluster: &Cluster, random: &mut Stream) -> Option<(DVec3, u32)> {
+    fn walk_free(
+        &self,
+        cluster: &Cluster,
+        random: &mut Stream,
+        progress: &Progress,
+    ) -> Result<Option<(DVec3, u32)>, Cancelled> {
         let far = LOST * (cluster.radius + 3.0);
         let mut p = self.start(cluster, random);
-        for _ in 0..MOST_STEPS {
+        for step in 0..MOST_STEPS {
+            if step % LOOK == 0 {
+                progress.check()?;
+            }
             let off = (p - cluster.middle).length();
             let at = cluster.cell(p);
             let free = match self.walk {
@@ -331,7 +352,7 @@ impl DlaSpec {
                 && cluster.pyramid.is_near(clamped(at, cluster.size), 1)
                 && let Some((parent, length)) = cluster.touched(p, way, free)
             {
-                return Some((p + way * length, parent));
+                return Ok(Some((p + way * length, parent)));
             }
             let next = p + way * free;
             let is_lost = match self.walk {
@@ -345,7 +366,7 @@ impl DlaSpec {
                 _ => next,
             };
         }
-        None
+        Ok(None)
     }
 }
 

@@ -138,7 +138,10 @@ impl Step {
         let distances = fractal.distances(spacing);
         if distances.is_empty() {
             let least = fractal.least.unwrap_or(2.0 * spacing);
-            return Err(wrong("fractal.distance", format!("no iteration: the distance starts below `least`, {least}")));
+            return Err(wrong(
+                "by.fractal.distance",
+                format!("no iteration: the distance starts below `least`, {least}"),
+            ));
         }
         let open = lattice.open_nodes() as f64;
         let mut asked = 0.0;
@@ -150,7 +153,7 @@ impl Step {
                     "with iteration {} there would be {asked} endpoints, more than the {open} nodes: lower `branching`, or allow fewer iterations",
                     i + 1
                 );
-                return Err(wrong("fractal", message));
+                return Err(wrong("by.fractal", message));
             }
         }
         let range = lattice.weight_range();
@@ -184,7 +187,7 @@ impl Step {
                 };
                 let chosen = choose(lattice, &room, count, apart, &fits, &stream);
                 if chosen.is_empty() && iteration == 0 {
-                    let message = "no node lies at that distance: raise `fractal.distance`, or enlarge the space";
+                    let message = "no node lies at that distance: raise `by.fractal.distance`, or enlarge the space";
                     return Err(wrong(&format!("to.{}", set.name), message.to_owned()));
                 }
                 for &end in &chosen {

@@ -42,11 +42,12 @@ fn one() -> f64 {
     1.0
 }
 
+const UNMATCHED: &str = "its brackets do not match: each `[` needs a `]`";
 /// Longer strings are refused.
 const MOST_SYMBOLS: f64 = 1e7;
 
 impl GrammarSpec {
-    /// How many symbols the string will have.
+    /// How many symbols the string will have at most on its way.
     fn length(&self) -> f64 {
         // Counts of each letter are all that matters.
         let count = |text: &str| {
@@ -55,6 +56,7 @@ impl GrammarSpec {
             counts
         };
         let mut counts = count(&self.axiom);
+        let mut longest: f64 = counts.values().sum();
         for _ in 0..self.iterations {
             let mut next: BTreeMap<char, f64> = BTreeMap::new();
             for (c, number) in &counts {
@@ -64,8 +66,9 @@ impl GrammarSpec {
                 }
             }
             counts = next;
+            longest = longest.max(counts.values().sum());
         }
-        counts.values().sum()
+        longest
     }
 
     /// The string after all iterations.
@@ -90,7 +93,7 @@ impl GrammarSpec {
         let symbols = self.length();
         if symbols > MOST_SYMBOLS {
             return Err(format!(
-                "after {} iterations there would be {symbols:.1e} symbols, more than {MOST_SYMBOLS:.0e}: use fewer",
+                "within {} iterations there would be {symbols:.1e} symbols, more than {MOST_SYMBOLS:.0e}: use fewer",
                 self.iterations
             ));
         }
@@ -105,7 +108,8 @@ impl GrammarSpec {
         let mut has_moved = false;
         let angle = self.angle.radians();
         let text = self.string();
-        for c in text.chars().chain([']']) {
+        let symbols = text.chars().count();
+        for (i, c) in (0..).zip(text.chars().chain([']'])) {
             let (at, axes, step) = &mut turtle;
             let turn = |axes: DMat3, axis: DVec3, angle: f64| rotation(axis, angle) * axes;
             match c {
@@ -131,7 +135,8 @@ impl GrammarSpec {
                             // A branch of nothing is no fork.
                             has_moved = moved && !has_moved && ends.len() == count;
                         }
-                        None => break,
+                        None if i < symbols => return Err(UNMATCHED.to_owned()),
+                        None => {}
                     }
                 }
                 'F' | 'G' => {
@@ -141,8 +146,8 @@ impl GrammarSpec {
                 _ => {}
             }
         }
-        if !stack.is_empty() || text.matches('[').count() != text.matches(']').count() {
-            return Err("its brackets do not match: each `[` needs a `]`".to_owned());
+        if text.matches('[').count() != text.matches(']').count() {
+            return Err(UNMATCHED.to_owned());
         }
         if ends.is_empty() {
             return Err("its turtle never moves: there is no `F`".to_owned());

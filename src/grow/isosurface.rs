@@ -9,7 +9,7 @@ use super::{GrowError, LatticeSpace};
 use crate::geom::{Bounds, Surface, fill};
 use crate::graph::{Graph, Lattice, Node, Window};
 use crate::math::{DVec2, DVec3, Progress};
-use crate::plan::{Goal, mean_cost, plan_delayed};
+use crate::plan::{Goal, mean_cost, plan_from};
 use crate::raster::rings;
 use crate::skeleton::Skeleton;
 
@@ -105,6 +105,12 @@ pub fn isosurface(
                     "path costs are measured on the lattice that the step grew in, with its spacing".to_owned(),
                 ));
             }
+            let nodes = space.window.nodes() as f64;
+            if nodes > MOST_SAMPLES {
+                let message =
+                    format!("{nodes:.1e} nodes are too many to measure costs on ({MOST_SAMPLES:.0e} at most)");
+                return Err(wrong("of", message));
+            }
             let surface = match space.neighbours.count() {
                 4 => by_cost::<4>(space, skeletons, spec, seed, progress)?,
                 8 => by_cost::<8>(space, skeletons, spec, seed, progress)?,
@@ -199,8 +205,7 @@ fn by_cost<const N: usize>(
     let most = (widest * scale) as u64;
     // A step beyond, so that values on both sides of the surface are known.
     let beyond = most + u64::from(range.most);
-    let plan = plan_delayed(&lattice, &[], &later, Goal::Within(beyond), progress)
-        .map_err(|error| wrong(error.to_string()))?;
+    let plan = plan_from(&lattice, &later, Goal::Within(beyond), progress).map_err(|error| wrong(error.to_string()))?;
     let starts: std::collections::HashMap<Node, u64> = later.iter().copied().collect();
     let costs = plan.carry(lattice.nodes(), u64::MAX, |node| starts[&node], |cost, weight| cost + u64::from(weight));
     let threshold = most as f64 + 0.5;

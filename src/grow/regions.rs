@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
 use rayon::prelude::*;
+use rustc_hash::FxHashSet;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -44,12 +45,24 @@ pub struct Regions {
 }
 
 impl Regions {
-    /// All of them as one solid.
+    /// All of them as one solid, without the gaps between them.
     #[must_use]
     pub fn solid(&self) -> Arc<Voxels> {
         let made = || {
-            let low = self.window.position([0; 3]);
-            Arc::new(Voxels::new(self.window.size, self.window.spacing, low, &self.is_inside))
+            // Beyond the window all is outside: a sample on each side says so.
+            let size = self.window.size;
+            let frame = size.map(|s| u32::from(s > 1));
+            let wide: [u32; 3] = std::array::from_fn(|axis| size[axis] + 2 * frame[axis]);
+            let mut is_inside = vec![false; wide.iter().map(|&s| s as usize).product()];
+            let row = size[0] as usize;
+            for (i, from) in self.is_inside.chunks_exact(row).enumerate() {
+                let (y, z) = (i as u32 % size[1] + frame[1], i as u32 / size[1] + frame[2]);
+                let to = (y as usize + z as usize * wide[1] as usize) * wide[0] as usize + frame[0] as usize;
+                is_inside[to..to + row].copy_from_slice(from);
+            }
+            let by = DVec3::from_array(frame.map(f64::from)) * self.window.spacing;
+            let low = self.window.position([0; 3]) - by;
+            Arc::new(Voxels::new(wide, self.window.spacing, low, &is_inside))
         };
         self.solid.get_or_init(made).clone()
     }
@@ -63,6 +76,8 @@ struct Labelled<'a, const N: usize> {
     lattice: Cow<'a, Lattice<N>>,
     shape: &'a Shape,
     nodes: Vec<(u16, u32)>,
+    /// Where the generators are, in coordinates.
+    seeds: Vec<[u32; 3]>,
 }
 
 impl<const N: usize> Labelled<'_, N> {
@@ -91,13 +106,12 @@ impl<const N: usize> Labelled<'_, N> {
         if a <= 0.0 && b > 0.0 { a / (a - b) } else { 0.5 }
     }
 
-    /// The border of a region.
-    fn surface(&self, region: u16, spec: &RegionsSpec) -> Surface {
+    /// The border of a region whose nodes lie between two corners.
+    fn surface(&self, region: u16, [low, high]: [[u32; 3]; 2], spec: &RegionsSpec) -> Surface {
         let window = self.lattice.window();
         let is_in = |at: [u32; 3]| self.nodes[self.cell(at)].0 == region;
         let spacing = window.spacing;
         if self.lattice.is_plane() {
-            let [low, high] = self.box_of(region);
             let size = [high[0] + 1 - low[0], high[1] + 1 - low[1]];
             let at = |x: u32, y: u32| [x + low[0], y + low[1], 0];
             let mut rings = if spec.gap > 0.0 {
@@ -111,7 +125,6 @@ impl<const N: usize> Labelled<'_, N> {
             return fill(&rings).map(|p| origin.with_z(0.0) + p * spacing);
         }
         // Only the part of the window that it takes up.
-        let [low, high] = self.box_of(region);
         let size = [0, 1, 2].map(|axis| high[axis] + 1 - low[axis]);
         let at = |at: [u32; 3]| [0, 1, 2].map(|axis| at[axis] + low[axis]);
         let mut surface = Surface::extract(size, |p| is_in(at(p)), |p, axis, up| self.crossing(at(p), axis, up))
@@ -128,32 +141,38 @@ impl<const N: usize> Labelled<'_, N> {
     fn regions(&self, kept: &[u16], spec: &RegionsSpec) -> Regions {
         let mut is_kept = vec![false; usize::from(NONE) + 1];
         kept.iter().for_each(|&region| is_kept[usize::from(region)] = true);
-        let surfaces: Vec<Surface> = kept.par_iter().map(|&region| self.surface(region, spec)).collect();
+        let boxes = self.boxes(self.seeds.len());
+        let own = |region: u16| Some((region, boxes[usize::from(region)])).filter(|(_, [low, high])| low[0] <= high[0]);
+        let present: Vec<(u16, [[u32; 3]; 2])> = kept.iter().filter_map(|&region| own(region)).collect();
+        let surfaces: Vec<Surface> = present.par_iter().map(|&(region, own)| self.surface(region, own, spec)).collect();
+        // A gap may leave nothing of a region, or less.
+        let is_there =
+            |surface: &Surface| !surface.triangles.is_empty() && (self.lattice.is_plane() || surface.volume() > 0.0);
         Regions {
-            // Other generators may have taken all of one's nodes.
-            surfaces: surfaces.into_iter().filter(|surface| !surface.triangles.is_empty()).collect(),
+            surfaces: surfaces.into_iter().filter(is_there).collect(),
             window: *self.lattice.window(),
             is_inside: self.nodes.iter().map(|&(region, _)| is_kept[usize::from(region)]).collect(),
             solid: OnceLock::new(),
         }
     }
 
-    fn box_of(&self, region: u16) -> [[u32; 3]; 2] {
+    /// The box of each region's nodes, in coordinates; that of one without nodes has its low corner above its high one.
+    fn boxes(&self, regions: usize) -> Vec<[[u32; 3]; 2]> {
         let size = self.lattice.window().size;
-        let (mut low, mut high) = (size, [0; 3]);
+        let mut boxes = vec![[size, [0; 3]]; regions];
         let mut i = 0;
         for z in 0..size[2] {
             for y in 0..size[1] {
                 for x in 0..size[0] {
-                    if self.nodes[i].0 == region {
-                        low = [low[0].min(x), low[1].min(y), low[2].min(z)];
-                        high = [high[0].max(x), high[1].max(y), high[2].max(z)];
+                    if let Some([low, high]) = boxes.get_mut(usize::from(self.nodes[i].0)) {
+                        *low = [low[0].min(x), low[1].min(y), low[2].min(z)];
+                        *high = [high[0].max(x), high[1].max(y), high[2].max(z)];
                     }
                     i += 1;
                 }
             }
         }
-        [low, high]
+        boxes
     }
 }
 
@@ -207,7 +226,8 @@ impl Step {
             |generator| (numbers[&generator], 0),
             |(region, cost): (u16, u32), weight| (region, cost.saturating_add(weight)),
         );
-        let mut labelled = Labelled { lattice: Cow::Borrowed(lattice), shape: &space.shape, nodes };
+        let seeds = generators.iter().map(|&node| lattice.coordinates(node)).collect();
+        let mut labelled = Labelled { lattice: Cow::Borrowed(lattice), shape: &space.shape, nodes, seeds };
         let mut kept: Vec<u16> = (0..generators.len() as u16).collect();
         if !spec.keep.is_empty() {
             kept.clear();
@@ -272,13 +292,16 @@ impl Step {
         let lattice: Lattice<N> = space.lattice_in(window, &stream, seed, Some(mask)).map_err(|error| {
             GrowError::Scene { place: format!("space.{}.weights", self.space_name), message: error.to_string() }
         })?;
+        // A region too thin for a sure node keeps its generator.
+        let seeds: FxHashSet<usize> = coarse.seeds.iter().map(|&at| coarse.cell(at)).collect();
         // Sure coarse nodes start it, with what they cost: a coarse step is two fine ones.
         let fractions = [coarse.lattice.weight_range().fraction, lattice.weight_range().fraction];
         let doubled = |cost: u32| (u64::from(cost) << (1 + fractions[1])) >> fractions[0];
         let sure = |node: Node| {
             let at = lattice.coordinates(node);
             let cell = coarse.cell(at.map(|c| c / 2));
-            (at.iter().all(|c| c % 2 == 0) && !is_border[cell] && coarse.nodes[cell].0 != NONE).then_some(cell)
+            let is_sure = !is_border[cell] || seeds.contains(&cell);
+            (at.iter().all(|c| c % 2 == 0) && is_sure && coarse.nodes[cell].0 != NONE).then_some(cell)
         };
         let later: Vec<(Node, u64)> =
             lattice.nodes().filter_map(|node| Some((node, doubled(coarse.nodes[sure(node)?].1)))).collect();
@@ -298,7 +321,8 @@ impl Step {
                 *node = (region, doubled(cost) as u32);
             }
         });
-        Ok(Labelled { lattice: Cow::Owned(lattice), shape: &space.shape, nodes })
+        let seeds = coarse.seeds.iter().map(|at| at.map(|c| c * 2)).collect();
+        Ok(Labelled { lattice: Cow::Owned(lattice), shape: &space.shape, nodes, seeds })
     }
 }
 

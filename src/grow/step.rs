@@ -135,6 +135,8 @@ pub enum GrowError {
     Cancelled(#[from] Cancelled),
 }
 
+/// More nodes of a skeleton than this are not made of fewer.
+const MOST_NODES: u64 = 40_000_000;
 /// Bytes that a node of a skeleton takes, with what is made of it.
 const NODE_BYTES: u64 = 256;
 
@@ -160,7 +162,7 @@ impl Step {
                     Method::Fractal(_) => 12,
                     Method::Dla(_) => 5,
                     // A region and a cost, carried along paths, and those of lattices twice as fine.
-                    Method::Regions(regions) => 20_u64 << (3 * regions.refine),
+                    Method::Regions(regions) => 20_u64 << (space.neighbours.dimensions() * regions.refine),
                 };
                 let kept = space.window.nodes().saturating_mul(each);
                 space.bytes_needed().saturating_add(skeleton).saturating_add(kept)
@@ -463,6 +465,16 @@ impl Step {
         }
         if matches!(self.method, Method::Regions(_)) {
             return Ok(skeleton);
+        }
+        let parts = self.symmetry.map_or(1, |symmetry| symmetry.parts());
+        let nodes = self
+            .strands
+            .map_or(skeleton.nodes.len() as u64, |pieces| skeleton.paths.len() as u64 * (u64::from(pieces) + 1));
+        let all = nodes.saturating_mul(u64::from(parts));
+        if all > MOST_NODES {
+            let key = if parts > 1 { "symmetry" } else { "strands" };
+            let message = format!("{all} nodes are more than {MOST_NODES}: use fewer endpoints, pieces or parts");
+            return Err(GrowError::Scene { place: format!("grow.{}.{key}", self.name), message });
         }
         if let Some(pieces) = self.strands {
             skeleton = skeleton.strands(pieces);

@@ -63,7 +63,12 @@ impl ThornsSpec {
             let start = passed;
             passed += area;
             let first = libm::ceil(start / each);
-            for i in 0..(passed / each - first + 1.0).max(0.0) as u32 {
+            let due = libm::floor(passed / each - first + 1.0).max(0.0);
+            let most = (thorns.balls.len() + thorns.segments.len()) as f64 + due * 3.0;
+            if most > MOST_PRIMITIVES as f64 {
+                return Err(SkinError::TooMany(most as usize));
+            }
+            for i in 0..due as u32 {
                 let share = (((first + f64::from(i)) * each - start) / area).clamp(0.0, 1.0);
                 turn += GOLDEN + random.random_range(-0.3..0.3);
                 let out = rotation(way, turn) * side;
@@ -79,9 +84,6 @@ impl ThornsSpec {
                 let from = thorns.balls.len() as u32;
                 thorns.balls.extend([ball(foot, self.radius * size), ball(tip, self.radius * size * POINT)]);
                 thorns.segments.push([from, from + 1]);
-            }
-            if thorns.balls.len() + thorns.segments.len() > MOST_PRIMITIVES {
-                return Err(SkinError::TooMany(thorns.balls.len() * 2));
             }
             passed %= each;
         }

@@ -16,5 +16,5 @@ mod tree;
 
 pub use mean::mean_cost;
 pub use routes::{Routes, routes};
-pub use search::{Goal, PlanError, bytes_needed, plan, plan_delayed};
+pub use search::{Goal, PlanError, bytes_needed, plan, plan_delayed, plan_from};
 pub use tree::Plan;

@@ -76,7 +76,7 @@ pub fn plan<'g, G: Graph>(
     progress: &Progress,
 ) -> Result<Plan<'g, G>, PlanError> {
     let threads = if graph.is_wide() { rayon::current_num_threads().min(MOST_THREADS) } else { 1 };
-    plan_on(graph, generators, &[], goal, threads, progress)
+    plan_on(graph, generators, Later::NONE, goal, threads, progress)
 }
 
 /// [`plan`] from `generators` and from `later` ones, each of which starts with the cost (fixed-point, up to 2^25) beside it. Paths
@@ -91,19 +91,47 @@ pub fn plan_delayed<'g, G: Graph>(
     goal: Goal<'_>,
     progress: &Progress,
 ) -> Result<Plan<'g, G>, PlanError> {
-    plan_on(graph, generators, later, goal, 1, progress)
+    plan_on(graph, generators, Later { nodes: later, gives_way: false }, goal, 1, progress)
+}
+
+/// Least costs where each node of `starts` costs no more than the fixed-point cost (up to 2^25) beside it: one that is reached
+/// for less is no generator.
+///
+/// # Errors
+/// As [`plan`].
+pub fn plan_from<'g, G: Graph>(
+    graph: &'g G,
+    starts: &[(Node, u64)],
+    goal: Goal<'_>,
+    progress: &Progress,
+) -> Result<Plan<'g, G>, PlanError> {
+    plan_on(graph, &[], Later { nodes: starts, gives_way: true }, goal, 1, progress)
+}
+
+/// Nodes that start later than others.
+#[derive(Clone, Copy)]
+pub(super) struct Later<'a> {
+    /// Each with its cost.
+    pub nodes: &'a [(Node, u64)],
+    /// Do those that were reached for less by then stay as they are?
+    pub gives_way: bool,
+}
+
+impl Later<'_> {
+    /// No node.
+    pub const NONE: Self = Self { nodes: &[], gives_way: false };
 }
 
 /// [`plan`] on so many threads; those that start later need one.
 pub(super) fn plan_on<'g, G: Graph>(
     graph: &'g G,
     generators: &[Node],
-    later: &[(Node, u64)],
+    later: Later<'_>,
     goal: Goal<'_>,
     threads: usize,
     progress: &Progress,
 ) -> Result<Plan<'g, G>, PlanError> {
-    debug_assert!(later.is_empty() || threads == 1);
+    debug_assert!(later.nodes.is_empty() || threads == 1);
     let width = Width::new(graph.weight_range(), G::SLOT_BITS)?;
     let cells = Cells::new(graph.cells());
     let mut buckets = Buckets::new(width.count());
@@ -128,9 +156,9 @@ pub(super) fn plan_on<'g, G: Graph>(
     } else {
         // Costs are compared modulo 2^32: none may start farther from its neighbours than that allows.
         let latest = 1_u64 << (30 - G::SLOT_BITS);
-        let mut later: Vec<(Node, u64)> = later.iter().map(|&(node, cost)| (node, cost.min(latest))).collect();
-        later.sort_unstable_by_key(|&(node, cost)| (cost, node));
-        run_alone(&front, buckets, &later, (Wanted::new(wanted), most), progress)?
+        let mut nodes: Vec<(Node, u64)> = later.nodes.iter().map(|&(node, cost)| (node, cost.min(latest))).collect();
+        nodes.sort_unstable_by_key(|&(node, cost)| (cost, node));
+        run_alone(&front, buckets, Later { nodes: &nodes, ..later }, (Wanted::new(wanted), most), progress)?
     };
     Ok(Plan::new(graph, cells, settled, farthest))
 }
@@ -145,7 +173,7 @@ impl<G: Graph> Plan<'_, G> {
     pub fn extend(&mut self, generators: &[Node], progress: &Progress) -> Result<(), PlanError> {
         let (graph, cells, farthest) = self.parts();
         if farthest >= FARTHEST {
-            *self = plan_on(graph, generators, &[], Goal::Everything, 1, progress)?;
+            *self = plan_on(graph, generators, Later::NONE, Goal::Everything, 1, progress)?;
             return Ok(());
         }
         let width = Width::new(graph.weight_range(), G::SLOT_BITS)?;
@@ -159,7 +187,7 @@ impl<G: Graph> Plan<'_, G> {
             }
         }
         let front = Front { graph, cells, width, start, waiting: 0 };
-        run_alone(&front, buckets, &[], (Wanted::new(None), u64::MAX), progress)?;
+        run_alone(&front, buckets, Later::NONE, (Wanted::new(None), u64::MAX), progress)?;
         Ok(())
     }
 }
@@ -169,11 +197,12 @@ impl<G: Graph> Plan<'_, G> {
 fn run_alone<G: Graph>(
     front: &Front<'_, G>,
     mut buckets: Buckets,
-    mut later: &[(Node, u64)],
+    later: Later<'_>,
     until: (Wanted, u64),
     progress: &Progress,
 ) -> Result<(usize, u64), Cancelled> {
     let (mut wanted, most) = until;
+    let Later { nodes: mut later, gives_way } = later;
     let Front { graph, cells, width, start, .. } = *front;
     let mut settled = 0;
     let mut base = width.base(start);
@@ -189,6 +218,10 @@ fn run_alone<G: Graph>(
             later = rest;
             // 0 would mean unreached.
             let value = (u64::from(start) + (cost << G::SLOT_BITS)) as u32;
+            let old = cells.get(graph.cell(node));
+            if gives_way && old != 0 && (old.wrapping_sub(value) as i32) < 0 {
+                continue;
+            }
             cells.set(graph.cell(node), if value == 0 { start } else { value });
             buckets.push_if(true, width.bucket(value), node);
         }

@@ -5,7 +5,7 @@ use std::collections::{BinaryHeap, HashMap};
 
 use proptest::prelude::*;
 
-use super::search::plan_on;
+use super::search::{Later, plan_on};
 use super::*;
 use crate::graph::{FieldValue, Graph, Lattice, Mask, Node, Weights, Window};
 use crate::math::{DVec3, Progress, Stream};
@@ -61,7 +61,7 @@ fn check<const N: usize>(size: [u32; 3], seed: u64, alpha: f64, field: bool, hol
     assert_eq!(all.settled(), expected.len());
 
     // Threads that share the front change nothing: the same cells.
-    let shared = plan_on(&lattice, &generators, &[], Goal::Everything, 2, &Progress::default()).unwrap();
+    let shared = plan_on(&lattice, &generators, Later::NONE, Goal::Everything, 2, &Progress::default()).unwrap();
     assert_eq!(shared.settled(), all.settled());
     for &node in &nodes {
         assert_eq!(shared.predecessor(node), all.predecessor(node));
@@ -200,4 +200,27 @@ fn searches_go_on_and_stop() {
             assert_eq!((near.cost(node), near.predecessor(node)), (grown.cost(node), grown.predecessor(node)));
         }
     }
+}
+
+/// A start that is dearer than the way to it is no start.
+#[test]
+fn dear_starts_give_way() {
+    let lattice = lattice::<8>([60, 50, 1], 4, 1.0, false, false);
+    let nodes: Vec<Node> = lattice.nodes().collect();
+    let starts: Vec<(Node, u64)> =
+        nodes.iter().step_by(97).enumerate().map(|(i, &n)| (n, (i as u64 % 5) << 19)).collect();
+    let found = plan_from(&lattice, &starts, Goal::Everything, &Progress::default()).unwrap();
+    let own: HashMap<Node, u64> = starts.iter().copied().collect();
+    let costs =
+        found.carry(nodes.iter().copied(), u64::MAX, |node| own[&node], |cost, weight| cost + u64::from(weight));
+    // From each start alone, the least of all.
+    let mut expected: HashMap<Node, u64> = HashMap::new();
+    for &(start, cost) in &starts {
+        for (node, way) in textbook(&lattice, &[start]) {
+            let best = expected.entry(node).or_insert(u64::MAX);
+            *best = (*best).min(cost + way);
+        }
+    }
+    assert!(nodes.iter().all(|&node| costs[lattice.cell(node)] == expected[&node]));
+    assert!(starts.iter().any(|&(node, cost)| costs[lattice.cell(node)] < cost));
 }

@@ -53,6 +53,11 @@ pub(super) fn listen(stream: Option<impl Read + Send + 'static>) -> Receiver<Str
                     return;
                 }
             }
+            let rest = String::from_utf8_lossy(&line).trim().to_owned();
+            if !rest.is_empty() {
+                // Nobody may listen any more.
+                let _ = send.send(rest);
+            }
         });
     }
     lines

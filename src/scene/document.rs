@@ -105,10 +105,10 @@ pub struct ObjectSpec {
     /// Leaves, fruit and blossom along the ends of its limbs, by name.
     #[serde(default)]
     pub leaves: BTreeMap<String, LeavesSpec>,
-    /// Thorns on the surface of its limbs (cones and spheres).
+    /// Thorns on the surface of its limbs (the skin `cones`).
     #[serde(default)]
     pub thorns: Option<ThornsSpec>,
-    /// Colours from a picture, for each of its trees or strands.
+    /// Colours from a picture, for each of its trees or strands (the skin `cones`).
     #[serde(default)]
     pub paint: Option<PaintSpec>,
     /// How far it is moved from where it grew.

@@ -23,7 +23,9 @@ pub(super) fn dress(
         (Some(mesh), _) => Object::of_mesh(&plan.name, mesh, plan.at, plan.material),
         (None, Skin::Surface) => return solids(scene, plan, grown),
         (None, Skin::Isosurface(spec)) => {
-            let space = plan.steps.first().and_then(|&step| scene.steps[step].space.lattice());
+            let solids = |i: usize| grown[i].regions.as_ref().map(Regions::solid);
+            let step = plan.steps.first().map(|&step| scene.steps[step].with_solids(&solids));
+            let space = step.as_ref().and_then(|step| step.space.lattice());
             let progress = Progress::default();
             let surface = isosurface(&spec, skeletons, space, scene.is_flat, scene.seed, &progress);
             let surface = surface.map_err(|error| match error {

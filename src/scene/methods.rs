@@ -122,8 +122,10 @@ impl Resolver<'_> {
             MethodSpec::Regions(regions) => Method::Regions(regions.clone()),
             MethodSpec::Dla(dla) => {
                 classes.push(SIDE.to_owned());
-                if lattice.is_some_and(|space| !space.shape.is_box()) {
-                    let message = "aggregation needs the room of a box: its walkers come from outside".to_owned();
+                if lattice.is_some_and(|space| !space.shape.is_box() || space.forbid.is_some()) {
+                    let message =
+                        "aggregation needs the room of a box with nothing forbidden: its walkers come from outside"
+                            .to_owned();
                     self.wrong(&format!("{place}.space"), message);
                 }
                 Method::Dla(*dla)

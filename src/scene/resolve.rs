@@ -415,10 +415,10 @@ impl Resolver<'_> {
                 "the skin `surface` is that of regions: limbs have `cones`, `spheres`, `mesh` or `isosurface`";
             self.wrong(&format!("{place}.skin"), message.to_owned());
         }
-        let is_limbs = matches!(spec.skin, Skin::Cones | Skin::Spheres) && !spec.grow.is_empty();
+        let is_cones = spec.skin == Skin::Cones && !spec.grow.is_empty();
         let keys = [
-            ("thorns", spec.thorns.is_some(), spec.skin == Skin::Cones && !spec.grow.is_empty(), "limbs of cones"),
-            ("paint", spec.paint.is_some(), is_limbs, "limbs of cones or spheres"),
+            ("thorns", spec.thorns.is_some(), is_cones, "limbs of cones"),
+            ("paint", spec.paint.is_some(), is_cones, "limbs of cones"),
             ("leaves", !spec.leaves.is_empty(), !is_surface, "limbs"),
         ];
         for (key, _, _, what) in keys.into_iter().filter(|(_, is_given, fits, _)| *is_given && !fits) {

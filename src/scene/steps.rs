@@ -29,6 +29,15 @@ impl Resolver<'_> {
             None => None,
         };
         let shape = shape?;
+        if shape.has_outline(spec.nodes.is_plane()) {
+            let message = if spec.nodes.is_plane() {
+                "letters and pictures have no `depth` in the plane"
+            } else {
+                "letters and pictures need a `depth` in space"
+            };
+            self.wrong(&format!("{place}.shape"), message.to_owned());
+            return None;
+        }
         let up = if spec.nodes.is_plane() { 1 } else { 2 };
         let fields: Vec<_> = spec
             .field
