@@ -3,9 +3,13 @@
 //! thread unless told. `--quick` leaves out the textbook's aggregate, which takes minutes.
 #![allow(clippy::print_stdout, reason = "it is a report")]
 
+#[path = "support/clock.rs"]
+mod clock;
+
 use std::process::Command;
 use std::time::Instant;
 
+use clock::median;
 use lichtenberg::export::{Origin, Pov, Rib, RibOptions, Templates};
 use lichtenberg::files::{Folder, embedded_scenes};
 use lichtenberg::geom::Surface;
@@ -19,18 +23,6 @@ type Failure = Box<dyn std::error::Error>;
 
 /// Each is run this often, and the median told.
 const RUNS: usize = 9;
-
-fn median(mut run: impl FnMut(), runs: usize) -> f64 {
-    let mut seconds: Vec<f64> = (0..runs)
-        .map(|_| {
-            let begun = Instant::now();
-            run();
-            begun.elapsed().as_secs_f64()
-        })
-        .collect();
-    seconds.sort_by(f64::total_cmp);
-    seconds[runs / 2]
-}
 
 fn embedded(name: &str, overrides: &[Override]) -> Result<Resolved, Failure> {
     let (name, text, folder) = embedded_scenes().into_iter().find(|(n, ..)| n == name).ok_or("no such scene")?;

@@ -2,8 +2,12 @@
 //! grows with its nodes. `--plot FILE` draws the latter.
 #![allow(clippy::print_stdout, reason = "it is a report")]
 
+#[path = "support/clock.rs"]
+mod clock;
+
 use std::time::Instant;
 
+use clock::median;
 use lichtenberg::files::Folder;
 use lichtenberg::graph::{Joining, Node, Region, Scatter, ScatterPlan, Sectors, WeightTable, Weights};
 use lichtenberg::math::{DVec3, Progress, Stream};
@@ -23,18 +27,6 @@ impl Region for Cube {
     fn bounds(&self) -> [DVec3; 2] {
         [DVec3::ZERO, DVec3::splat(self.0)]
     }
-}
-
-fn median(mut run: impl FnMut(), runs: usize) -> f64 {
-    let mut seconds: Vec<f64> = (0..runs)
-        .map(|_| {
-            let begun = Instant::now();
-            run();
-            begun.elapsed().as_secs_f64()
-        })
-        .collect();
-    seconds.sort_by(f64::total_cmp);
-    seconds[runs / 2]
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

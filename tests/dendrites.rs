@@ -158,6 +158,59 @@ fn lichen_stays_on_the_rock() {
     assert!(off.iter().any(|&d| d > 1.4));
 }
 
+/// On the lattice and off it, in the plane and in space, in large steps and in single ones: every particle touches the one that
+/// it came to, and overlaps none.
+#[test]
+fn aggregates_touch() {
+    for (name, step) in [("papers/2007-fig11", "aggregate"), ("aggregate", "aggregate")] {
+        for lattice in [true, false] {
+            for walk in ["fast", "textbook"] {
+                let space = name != "aggregate";
+                let shape = if space {
+                    "{ box = { min = [-25, -25], max = [25, 25] } }"
+                } else {
+                    "{ box = { min = [-9, -9, -9], max = [9, 9, 9] } }"
+                };
+                let by = format!("{{ particles = 250, lattice = {lattice}, walk = \"{walk}\" }}");
+                let mut overrides = vec![("grow.aggregate.by.dla", &*by)];
+                overrides.push((if space { "space.sheet.shape" } else { "space.room.shape" }, shape));
+                if space {
+                    overrides.push(("grow.imitation.by.fractal.distance", "20"));
+                    overrides.push(("grow.imitation.to.ends.apart", "2"));
+                }
+                let (grown, _) = grown(name, &overrides);
+                let nodes = &grown.iter().find(|g| g.name == step).unwrap().skeleton.nodes;
+                assert!(nodes.len() > 200, "{name} {by}: {}", nodes.len());
+                for (i, node) in nodes.iter().enumerate().skip(1) {
+                    let parent = nodes[node.parent.unwrap() as usize].position;
+                    assert!(((node.position - parent).length() - 1.0).abs() < 1e-6, "{name} {by}: {i}");
+                    let others = nodes[..i].iter().map(|other| (other.position - node.position).length());
+                    assert!(others.fold(f64::INFINITY, f64::min) > 1.0 - 1e-6, "{name} {by}: {i} overlaps");
+                }
+            }
+        }
+    }
+}
+
+/// Every strand has the colour of the picture where it starts.
+#[test]
+fn strands_are_painted() {
+    let (_, model) = grown("papers/2007-fig14-left", &[]);
+    assert_eq!(model.objects.len(), 2);
+    let middle = |i: usize| {
+        let balls = &model.objects[i].balls;
+        balls.iter().map(|ball| ball.centre.x).sum::<f64>() / balls.len() as f64
+    };
+    let colour = |i: usize| model.materials[model.objects[i].material].1.colour.hex();
+    let [left, right] = if middle(0) < middle(1) { [0, 1] } else { [1, 0] };
+    assert_eq!((&*colour(left), &*colour(right)), ("006633", "993300"));
+    // Limbs are numbered anew in each.
+    for object in &model.objects {
+        assert!(object.balls.iter().any(|ball| ball.branch == 0));
+        assert!(object.balls.iter().all(|ball| (ball.branch as usize) < object.balls.len()));
+    }
+}
+
 /// Letters in space are those of the plane, upright.
 #[test]
 fn letters_stand_upright() {

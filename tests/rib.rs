@@ -205,6 +205,25 @@ fn shadows_and_displacement_are_told_apart() {
     assert!(scene.contains("\"raydistant\"") && scene.contains("\"int transmission\" [1]"));
 }
 
+/// What casts no shadow is not in what shadow maps show.
+#[test]
+fn shadow_maps_show_casters_alone() {
+    let mut model = modelled("papers/2007-fig12");
+    let maps = RibOptions { shadows: RibShadows::Maps, displace: false };
+    assert!(exported(&model, maps).0.matches("\"scene.archive.rib\"").count() >= 2);
+    model.objects[0].shadow = false;
+    let templates = Templates::default();
+    let rib = Rib::new(&model, &templates, "scene", [160, 120], &Origin::default(), maps);
+    let scene = rib.scene().unwrap();
+    assert!(rib.has_casters() && scene.contains("\"scene.casters.rib\""));
+    assert_eq!(scene.matches("\"scene.archive.rib\"").count(), 1);
+    let mut casters = Vec::new();
+    rib.write_casters(&mut casters).unwrap();
+    let world = read(&scene, &text(&casters));
+    assert!(world.objects.iter().all(|(name, ..)| *name != model.objects[0].name));
+    assert!(world.objects.iter().any(|(name, ..)| *name == model.objects[1].name));
+}
+
 /// The files of the command: whole, packed or not, and left alone where they were edited.
 #[test]
 fn the_command_writes_scene_and_archive() {

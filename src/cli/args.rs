@@ -373,7 +373,7 @@ pub enum Shadows {
     None,
     /// Traced by the light `raydistant`, which Pixie has
     Rays,
-    /// Maps that the scene makes first, read by the light `shadowdistant`, which Aqsis has; objects without shadow have one there
+    /// Maps that the scene makes first, read by the light `shadowdistant`, which Aqsis has
     Maps,
 }
 

@@ -63,6 +63,9 @@ pub fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
                 let origin = job.origin(scene.seed, "export");
                 let shadows = args.shadows.map_or(RibShadows::None, Shadows::of);
                 let options = RibOptions { shadows, displace: args.displace };
+                if args.displace && model.objects.iter().any(|o| o.thorns.is_some_and(|thorns| thorns.lean > 0.0)) {
+                    console.note("note: displaced thorns stand upright: only those that are cones `lean`");
+                }
                 let rib = Rib::new(&model, &templates, name, scene.size, &origin, options);
                 told(write_rib(&rib, folder, name, args.gzip, args.force)?, console)
             }

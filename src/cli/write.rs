@@ -76,16 +76,21 @@ pub fn write_rib(rib: &Rib<'_>, folder: &Path, name: &str, gzip: bool, force: bo
     let archive = folder.join(format!("{name}.archive.rib"));
     let scene = folder.join(format!("{name}.rib"));
     let text = seal("#", &rib.scene().map_err(|e| failure(&scene, e))?);
-    write_whole(&archive, |out| {
-        if !gzip {
-            return rib.write_archive(out);
-        }
-        let mut packed = GzBuilder::new().write(out, Compression::default());
-        rib.write_archive(&mut packed)?;
-        packed.finish().map(|_| ())
-    })
-    .map_err(|e| failure(&archive, e))?;
-    let mut written = Written { files: vec![archive], kept: Vec::new() };
+    let mut written = Written { files: Vec::new(), kept: Vec::new() };
+    let casters = rib.has_casters().then(|| (folder.join(format!("{name}.casters.rib")), true));
+    for (path, is_casters) in std::iter::once((archive, false)).chain(casters) {
+        let write = |out: &mut dyn Write| if is_casters { rib.write_casters(out) } else { rib.write_archive(out) };
+        write_whole(&path, |out| {
+            if !gzip {
+                return write(out);
+            }
+            let mut packed = GzBuilder::new().write(out, Compression::default());
+            write(&mut packed)?;
+            packed.finish().map(|_| ())
+        })
+        .map_err(|e| failure(&path, e))?;
+        written.files.push(path);
+    }
     if let Some(shader) = rib.shader() {
         let path = folder.join("thorns.sl");
         // One that differs was edited.

@@ -1,5 +1,6 @@
 //! Exporters: from a [`crate::model::Model`] to text, written to any [`std::io::Write`]. They open no files.
 
+mod buffer;
 mod decimal;
 mod identifier;
 mod mesh;

@@ -2,14 +2,12 @@
 
 use std::io::{self, Write};
 
+use super::buffer::{BUFFER, flush_at};
 use super::decimal::{number, push_number, push_vector, vector};
 use super::pov::to_pov;
 use crate::geom::frustum;
 use crate::math::DVec3;
 use crate::model::{Digits, Frame, Mesh, Object, Pattern, Pose, limb_frames};
-
-/// The text buffered before it is written.
-const BUFFER: usize = 1 << 16;
 
 /// Writes what `object` is made of. Where its material has a pattern, limbs that are thick enough to show it have
 /// `texture`, laid along them. `one` is what its mesh is declared as, where that has poses.
@@ -124,13 +122,4 @@ pub(super) fn write_mesh(mesh: &Mesh, digits: Digits, out: &mut impl Write) -> i
         }
     }
     writeln!(out, " }}\n}}")
-}
-
-/// Writes `text` out and empties it when it has reached `size` bytes.
-fn flush_at(text: &mut Vec<u8>, out: &mut impl Write, size: usize) -> io::Result<()> {
-    if text.len() >= size {
-        out.write_all(text)?;
-        text.clear();
-    }
-    Ok(())
 }

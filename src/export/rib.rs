@@ -11,7 +11,7 @@ use super::rib_sheets::{Sheet, sheets};
 use super::{Origin, TemplateError, Templates};
 use crate::geom::Bounds;
 use crate::math::{Colour, DVec3};
-use crate::model::{Camera, Digits, Light, Material, Model, Projection};
+use crate::model::{Camera, Digits, Light, Material, Model, Object, Projection};
 
 /// Digits of numbers that are not lengths.
 pub(super) const PLAIN: Digits = Digits(6);
@@ -26,8 +26,7 @@ pub enum RibShadows {
     None,
     /// Traced by the light `raydistant`, which Pixie has.
     Rays,
-    /// Maps that the scene makes first, read by the light `shadowdistant`, which Aqsis has. Objects without shadow have one
-    /// there, since maps show all.
+    /// Maps that the scene makes first, read by the light `shadowdistant`, which Aqsis has.
     Maps,
 }
 
@@ -65,6 +64,8 @@ struct Values {
     sheets: Vec<Sheet>,
     /// Are shadows traced?
     rays: bool,
+    /// What the maps show: the end of the name of an archive.
+    casters: &'static str,
 }
 
 #[derive(Serialize)]
@@ -178,6 +179,7 @@ impl<'a> Rib<'a> {
             }
         });
         let lights = lights.collect();
+        let casters = has_casters(model, options);
         let values = Values {
             version: env!("CARGO_PKG_VERSION"),
             title: plain(&model.title),
@@ -195,6 +197,7 @@ impl<'a> Rib<'a> {
             maps,
             sheets,
             rays: options.shadows == RibShadows::Rays,
+            casters: if casters { "casters" } else { "archive" },
             stem,
         };
         Self { model, templates, options, values }
@@ -217,19 +220,41 @@ impl<'a> Rib<'a> {
         is_used.then(|| self.templates.text("thorns.sl"))
     }
 
+    /// Do its shadow maps need an archive of their own, `NAME.casters.rib`, since some objects cast no shadow?
+    #[must_use]
+    pub fn has_casters(&self) -> bool {
+        has_casters(self.model, self.options)
+    }
+
     /// Writes `NAME.archive.rib`: every object, where it stands in the world.
     ///
     /// # Errors
     /// What `out` says.
-    pub fn write_archive(&self, mut out: impl Write) -> io::Result<()> {
+    pub fn write_archive(&self, out: impl Write) -> io::Result<()> {
+        self.write_objects(|_| true, out)
+    }
+
+    /// Writes `NAME.casters.rib`: the objects that cast shadows.
+    ///
+    /// # Errors
+    /// What `out` says.
+    pub fn write_casters(&self, out: impl Write) -> io::Result<()> {
+        self.write_objects(|object| object.shadow, out)
+    }
+
+    fn write_objects(&self, is_wanted: impl Fn(&Object) -> bool, mut out: impl Write) -> io::Result<()> {
         writeln!(out, "##RenderMan RIB-Structure 1.1 Entity\nversion 3.03")?;
-        let shown = |object: &&crate::model::Object| !(self.options.displace && object.is_thorns);
+        let shown = |object: &&Object| is_wanted(object) && !(self.options.displace && object.is_thorns);
         for (handle, object) in (1..).zip(self.model.objects.iter().filter(shown)) {
             let (_, material) = &self.model.materials[object.material];
             write_object(object, &surface(material), handle, self.options, &mut out)?;
         }
         Ok(())
     }
+}
+
+fn has_casters(model: &Model, options: RibOptions) -> bool {
+    options.shadows == RibShadows::Maps && model.objects.iter().any(|object| !object.shadow)
 }
 
 /// The surface of a material: a colour and a standard shader.

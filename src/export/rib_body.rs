@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use super::buffer::{BUFFER, flush_at};
 use super::decimal::{plain_number as number, push_plain as push_number};
 use super::identifier::plain;
 use super::rib::{RibOptions, RibShadows, triple};
@@ -11,8 +12,6 @@ use crate::model::{Digits, Instance, Mesh, Object, Pose};
 
 /// Digits of the numbers of matrices.
 pub(super) const MATRIX: Digits = Digits(8);
-/// The text buffered before it is written.
-const BUFFER: usize = 1 << 16;
 /// Triangles of one `PointsPolygons`: renderers take a mesh whole.
 const MOST_TRIANGLES: usize = 200_000;
 
@@ -183,15 +182,6 @@ fn write_mesh(
     list(out, "\"P\"", used.len(), &|text, i| vector(text, mesh.points[used[i]] + offset, digits))?;
     if !mesh.normals.is_empty() {
         list(out, "\"N\"", used.len(), &|text, i| vector(text, mesh.normals[used[i]], Digits(6)))?;
-    }
-    Ok(())
-}
-
-/// Writes `text` out and empties it when it has reached `size` bytes.
-fn flush_at(text: &mut Vec<u8>, out: &mut impl Write, size: usize) -> io::Result<()> {
-    if text.len() >= size {
-        out.write_all(text)?;
-        text.clear();
     }
     Ok(())
 }

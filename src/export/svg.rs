@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::identifier::plain;
 use crate::grow::{Mark, MarkKind};
-use crate::math::{Colour, DVec2, DVec3, srgb_byte};
+use crate::math::{Colour, DVec2, DVec3};
 use crate::model::{Camera, Material, Model, Projected};
 
 /// How a schematic is drawn.
@@ -170,8 +170,7 @@ fn ink(material: &Material) -> String {
         return "#000".to_owned();
     }
     let Colour(rgb) = material.colour;
-    let [r, g, b] = rgb.map(|c| srgb_byte(c * material.emission));
-    format!("#{r:02x}{g:02x}{b:02x}")
+    format!("#{}", Colour(rgb.map(|c| c * material.emission)).hex())
 }
 
 fn escape(text: &str) -> String {

@@ -72,7 +72,7 @@ const FAR: f32 = 1e12;
 fn squared_distances(size: [usize; 3], set: impl Fn(usize) -> bool + Sync) -> Vec<f32> {
     let [nx, ny, nz] = size;
     let mut all: Vec<f32> = (0..nx * ny * nz).into_par_iter().map(|i| if set(i) { 0.0 } else { FAR }).collect();
-    all.par_chunks_mut(nx).for_each_init(Envelope::default, |envelope, row| envelope.lower(row));
+    all.par_chunks_mut(nx).for_each(sweep);
     all.par_chunks_mut(nx * ny).for_each_init(
         || (Envelope::default(), vec![0.0; ny]),
         |(envelope, line), layer| {
@@ -106,6 +106,19 @@ fn squared_distances(size: [usize; 3], set: impl Fn(usize) -> bool + Sync) -> Ve
         });
     }
     all
+}
+
+/// Along the first axis samples are set or not: there and back, counting steps.
+fn sweep(row: &mut [f32]) {
+    let pass = |steps: &mut f32, value: &mut f32| {
+        *steps = if *value == 0.0 { 0.0 } else { *steps + 1.0 };
+        let squared = *steps * *steps;
+        *value = if squared < *value { squared } else { *value };
+    };
+    let mut steps = FAR;
+    row.iter_mut().for_each(|value| pass(&mut steps, value));
+    let mut steps = FAR;
+    row.iter_mut().rev().for_each(|value| pass(&mut steps, value));
 }
 
 /// The lower envelope of parabolas over a row.

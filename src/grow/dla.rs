@@ -383,16 +383,7 @@ fn skeleton(cluster: &Cluster, classes: Vec<String>, place: impl Fn(DVec3) -> DV
             is_tip[parent as usize] = false;
             skeleton.nodes[parent as usize].cost + 1.0
         });
-        skeleton.nodes.push(SkeletonNode {
-            position: place(p),
-            parent,
-            cost,
-            age: cost,
-            radius: 0.0,
-            branch: 0,
-            level: 0,
-            class: 0,
-        });
+        skeleton.nodes.push(SkeletonNode::new(place(p), parent, cost, 0));
     }
     let tips = (0..cluster.places.len() as u32).filter(|&i| is_tip[i as usize]);
     skeleton.paths = tips.map(|end| Path { end, class: 0, root: 0 }).collect();

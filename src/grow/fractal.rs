@@ -3,9 +3,11 @@
 
 use std::collections::VecDeque;
 
+use rustc_hash::FxHashMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::choice::in_random_order;
 use super::endpoints::Crowd;
 use super::{GrowError, Placement, Step};
 use crate::graph::{Graph, Lattice, Node};
@@ -166,7 +168,9 @@ impl Step {
         let mut near = Nearness::new(lattice.cells());
         let mut fresh: Vec<Node> = structure.clone();
         let mut way: Vec<(Node, u32)> = Vec::new();
+        let exact: FxHashMap<Node, DVec3> = starts.iter().filter_map(|&(node, at)| Some((node, at?))).collect();
         for (iteration, &distance) in distances.iter().enumerate() {
+            let level = iteration as u16;
             let steps = distance / spacing;
             let reach = if fractal.place == Vicinity::At { steps + 0.5 } else { steps };
             let most = (reach * reach).min(f64::from(u32::MAX - 1));
@@ -204,25 +208,20 @@ impl Step {
                     let cell = lattice.cell(at);
                     if known[cell] == u32::MAX {
                         // A generator, where exactly it is meant.
-                        let exact = starts.iter().find(|(node, _)| *node == at).and_then(|(_, exact)| *exact);
+                        let position = exact.get(&at).copied().unwrap_or_else(|| lattice.position(at));
                         known[cell] = skeleton.nodes.len() as u32;
-                        let position = exact.unwrap_or_else(|| lattice.position(at));
-                        skeleton.nodes.push(SkeletonNode { position, ..blank(iteration, set.class) });
+                        skeleton
+                            .nodes
+                            .push(SkeletonNode { level, ..SkeletonNode::new(position, None, 0.0, set.class) });
                     }
                     let mut parent = known[cell];
                     for &(node, weight) in way.iter().rev() {
                         let cost = skeleton.nodes[parent as usize].cost + range.real(u64::from(weight));
                         let position = lattice.position(node);
-                        let made = SkeletonNode {
-                            position,
-                            parent: Some(parent),
-                            cost,
-                            age: cost,
-                            ..blank(iteration, set.class)
-                        };
+                        let made = SkeletonNode::new(position, Some(parent), cost, set.class);
                         parent = skeleton.nodes.len() as u32;
                         known[lattice.cell(node)] = parent;
-                        skeleton.nodes.push(made);
+                        skeleton.nodes.push(SkeletonNode { level, ..made });
                         fresh.push(node);
                     }
                     skeleton.paths.push(Path { end: parent, class: set.class, root: 0 });
@@ -236,12 +235,6 @@ impl Step {
         }
         Ok((skeleton, settled))
     }
-}
-
-/// A root of this level and class.
-fn blank(iteration: usize, class: u16) -> SkeletonNode {
-    let level = iteration as u16;
-    SkeletonNode { position: DVec3::ZERO, parent: None, cost: 0.0, age: 0.0, radius: 0.0, branch: 0, level, class }
 }
 
 /// `count` of the nodes in `room` at random, no two nearer than `apart`, in random order; as many as there are.
@@ -259,26 +252,15 @@ fn choose<const N: usize>(
         let key = |axis: usize| u64::from(at[axis].wrapping_add_signed(origin[axis]));
         mix(stream.key() ^ mix(key(0) | key(1) << 32) ^ mix(!key(2)))
     };
-    let mut order: Vec<(u64, Node)> = room.iter().map(|&node| (name(node), node)).collect();
+    let order: Vec<(u64, Node)> = room.iter().map(|&node| (name(node), node)).collect();
     let mut crowd = Crowd::new(apart);
-    let mut chosen = Vec::new();
-    let mut sorted = 0;
-    while chosen.len() < count && sorted < order.len() {
-        // Most choices are few among many: the rest need not be sorted.
-        let next = (sorted + (count - chosen.len()).max(64) * 2).min(order.len());
-        if next < order.len() {
-            order[sorted..].select_nth_unstable(next - sorted);
+    in_random_order(order, count, |node| {
+        let is_taken = fits(node) && crowd.has_room(lattice.position(node));
+        if is_taken {
+            crowd.add(lattice.position(node));
         }
-        order[sorted..next].sort_unstable();
-        for &(_, node) in &order[sorted..next] {
-            if chosen.len() < count && fits(node) && crowd.has_room(lattice.position(node)) {
-                crowd.add(lattice.position(node));
-                chosen.push(node);
-            }
-        }
-        sorted = next;
-    }
-    chosen
+        is_taken
+    })
 }
 
 #[cfg(test)]

@@ -139,16 +139,8 @@ impl<'a> Rounds<'a> {
                 return;
             }
             let node = skeleton.nodes.len() as u32;
-            skeleton.nodes.push(SkeletonNode {
-                position,
-                parent: None,
-                cost: 0.0,
-                age: from.map_or(0.0, |from| from.age),
-                radius: 0.0,
-                branch: 0,
-                level: from.map_or(0, |from| from.level),
-                class: 0,
-            });
+            let (age, level) = from.map_or((0.0, 0), |from| (from.age, from.level));
+            skeleton.nodes.push(SkeletonNode { age, level, ..SkeletonNode::new(position, None, 0.0, 0) });
             let lifespan = repeat.lifespan.first;
             ends.push(End { node, way, lifespan, name: mix(u64::from(node)) });
         };

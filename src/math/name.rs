@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use super::from_srgb;
+use super::{from_srgb, srgb_byte};
 use glam::DVec3;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error;
@@ -92,6 +92,12 @@ impl Colour {
     #[must_use]
     pub fn from_srgb(rgb: [u8; 3]) -> Self {
         Self(rgb.map(|byte| from_srgb(f64::from(byte) / 255.0)))
+    }
+
+    /// Its sRGB encoding as six digits, as in `707070`.
+    #[must_use]
+    pub fn hex(self) -> String {
+        self.0.map(|c| format!("{:02x}", srgb_byte(c))).concat()
     }
 
     fn from_hex(text: &str) -> Option<Self> {

@@ -4,7 +4,7 @@ use super::build::Stage;
 use super::{ObjectPlan, Resolved};
 use crate::geom::{Bounds, Surface};
 use crate::grow::{GrowError, Grown, Regions, isosurface};
-use crate::math::{Colour, DVec3, Progress, Stream};
+use crate::math::{DVec3, Progress, Stream};
 use crate::model::{Instance, Material, Mesh, Object, Skin, SkinError, foot, to_world};
 use crate::skeleton::Skeleton;
 
@@ -46,7 +46,7 @@ pub(super) fn dress(
     if let Some((picture, steps)) = &plan.paint {
         let base = materials[plan.material].clone();
         for (part, colour) in whole.painted(picture, *steps, scene.is_flat) {
-            let name = format!("{} {}", base.0, hex(colour));
+            let name = format!("{} {}", base.0, colour.hex());
             let known = materials.iter().position(|(known, _)| *known == name);
             let index = known.unwrap_or_else(|| {
                 materials.push((name, Material { colour, ..base.1 }));
@@ -127,9 +127,4 @@ fn placed(scene: &Resolved, plan: &ObjectPlan, mut parts: Vec<Object>) -> Vec<Ob
         }));
     }
     parts
-}
-
-/// A colour as a name.
-fn hex(Colour(colour): Colour) -> String {
-    colour.map(|c| format!("{:02x}", crate::math::srgb_byte(c))).concat()
 }

@@ -27,6 +27,14 @@ pub struct SkeletonNode {
     pub class: u16,
 }
 
+impl SkeletonNode {
+    /// A node without radius, of the first limb and level; its age is its cost.
+    #[must_use]
+    pub fn new(position: DVec3, parent: Option<u32>, cost: f64, class: u16) -> Self {
+        Self { position, parent, cost, age: cost, radius: 0.0, branch: 0, level: 0, class }
+    }
+}
+
 /// The end of one path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Path {
@@ -76,16 +84,7 @@ impl Skeleton {
         for (node, position, cost) in fresh.into_iter().rev() {
             let at = self.nodes.len() as u32;
             known.insert(node, at);
-            self.nodes.push(SkeletonNode {
-                position,
-                parent,
-                cost,
-                age: cost,
-                radius: 0.0,
-                branch: 0,
-                level: 0,
-                class,
-            });
+            self.nodes.push(SkeletonNode::new(position, parent, cost, class));
             parent = Some(at);
         }
         self.paths.extend(parent.map(|end| Path { end, class, root: 0 }));
