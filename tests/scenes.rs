@@ -25,7 +25,7 @@ fn scenes_hold_what_they_claim() {
     for name in scene_names() {
         let scene = embedded(&name, &[]);
         let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
-        let findings = check_claims(&scene.claims, &grown);
+        let findings = check_claims(&scene, &grown);
         assert_eq!(findings.len(), scene.claims.len(), "{name}: every claim is measured");
         assert!(!findings.is_empty(), "{name} claims nothing");
         for finding in findings {

@@ -36,7 +36,7 @@ pub fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
         let progress = console.progress(job.name());
         let grown = jobs.grow(&scene, &[], console, &progress)?;
         console.done();
-        for finding in check_claims(&scene.claims, &grown) {
+        for finding in check_claims(&scene, &grown) {
             if console.json {
                 console.result(&serde_json::json!({ "scene": job.name(), "finding": finding }));
             } else {

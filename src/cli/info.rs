@@ -76,7 +76,7 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
             "bytes": { "needed": scene.bytes_needed(), "pov": count.0 },
             "seconds": seconds.iter().map(|(stage, s)| ((*stage).to_owned(), json!(s))).collect::<serde_json::Map<_, _>>(),
             "steps": steps,
-            "claims": scene::check_claims(&scene.claims, &grown),
+            "claims": scene::check_claims(&scene, &grown),
         });
         if console.json {
             console.result(&all);

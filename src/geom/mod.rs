@@ -5,6 +5,7 @@
 mod bounds;
 mod closed_mesh;
 mod cubes;
+mod occupancy;
 mod outline;
 mod profile;
 mod round_cone;
@@ -16,6 +17,7 @@ mod voxels;
 pub use bounds::Bounds;
 pub use closed_mesh::ClosedMesh;
 pub use cubes::{Surface, fill, vertex_normals};
+pub use occupancy::Occupancy;
 pub use outline::{Outline, simplified};
 pub use profile::Profile;
 pub use round_cone::{Frustum, frustum};

@@ -224,7 +224,8 @@ impl Step {
                         skeleton.nodes.push(SkeletonNode { level, ..made });
                         fresh.push(node);
                     }
-                    skeleton.paths.push(Path { end: parent, class: set.class, root: 0 });
+                    let name = skeleton.paths.len() as u64;
+                    skeleton.paths.push(Path { end: parent, class: set.class, root: 0, name });
                 }
             }
             progress.report("grow", (iteration + 1) as f64 / distances.len() as f64)?;

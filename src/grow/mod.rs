@@ -1,7 +1,8 @@
-//! Growth: the steps of a scene, each from a space and endpoints to a skeleton.
+//! Growth: the steps of a scene, each to a skeleton: by least-cost paths in its space, by segments, in voxels, or as solids.
 //!
 //! Later stages need never handle an endpoint without a path: unreached ones are an error or dropped and counted.
 
+mod automaton;
 mod choice;
 mod construction;
 mod dbm;
@@ -12,17 +13,25 @@ mod grammar;
 mod influence;
 mod isosurface;
 mod laplace;
+mod light;
+mod neighbourhood;
 mod refine;
 mod regions;
 mod repeat;
 mod rounds;
 mod scatter_space;
 mod scattered;
+mod segments;
+mod segments_spec;
 mod solids;
 mod space;
 mod spec;
+mod starts;
 mod step;
+mod voxel_space;
+mod voxels_spec;
 
+pub use automaton::{Cling, Voxels};
 pub use construction::{Mark, MarkKind};
 pub use dbm::{Dbm, DbmSpec, SIDE, Solver};
 pub use dla::{DlaSpec, Walk};
@@ -31,6 +40,7 @@ pub use fractal::{FractalSpec, Vicinity};
 pub use grammar::GrammarSpec;
 pub use influence::{Canopy, Influence, Rank, sky};
 pub use isosurface::{Distance, IsosurfaceSpec, isosurface};
+pub use light::LightSense;
 pub use refine::{Refine, RefineSpec};
 pub use regions::{Regions, RegionsSpec};
 pub use repeat::{
@@ -38,9 +48,13 @@ pub use repeat::{
 };
 pub use rounds::{Repeat, Rounds, Target, Turn};
 pub use scatter_space::{Clusters, ScatterSpace};
+pub use segments::{Attractor, Branches, Expected, Segments};
+pub use segments_spec::{AttractorSpec, BranchesSpec, SegmentsSpec};
 pub use space::{LatticeSpace, Space};
 pub use spec::{
     EndpointSpec, FromSpec, LatticeSpec, MethodSpec, NearSpec, NodesSpec, ScatterSpec, SpaceSpec, SpreadSpec, StepSpec,
-    Toward, Unreached,
+    Toward, Unreached, VoxelNodesSpec,
 };
 pub use step::{GrowError, Grown, Method, Part, Source, Step};
+pub use voxel_space::VoxelSpace;
+pub use voxels_spec::{AgeBranchesSpec, ClingSpec, KeepFromSpec, LightSenseSpec, SunSpec, VoxelsSpec};

@@ -184,7 +184,7 @@ impl Round<'_> {
         fine.paths = coarse
             .paths
             .iter()
-            .map(|path| Path { end: renamed[path.end as usize], root: renamed[path.root as usize], class: path.class })
+            .map(|path| Path { end: renamed[path.end as usize], root: renamed[path.root as usize], ..*path })
             .collect();
         Ok(fine)
     }

@@ -452,12 +452,13 @@ impl<'a> Rounds<'a> {
         let mut random = stream.nth(mix(end.name));
         for (i, (node, class)) in (1_u64..).zip(sprout.ends) {
             let node = named(node);
-            skeleton.paths.push(Path { end: node, class, root: end.node });
+            let name = mix(end.name ^ mix(i));
+            skeleton.paths.push(Path { end: node, class, root: end.node, name });
             let loss = share.loss.unwrap_or_else(|| self.repeat.lifespan.lose(end.lifespan, &mut random));
             let lifespan = end.lifespan.saturating_sub(loss);
             let way = (skeleton.nodes[node as usize].position - root.position).normalize_or(end.way);
             if lifespan > 0 {
-                self.ends.push(End { node, way, lifespan, name: mix(end.name ^ mix(i)) });
+                self.ends.push(End { node, way, lifespan, name });
             }
         }
         grown.nodes += sprout.graph[0];

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::{Placement, Rank, Source, Space, Step, Target};
+use super::{Method, Placement, Rank, Source, Space, Step, Target};
 use crate::geom::{Shape, Solid, Voxels};
 use crate::graph::{CostField, Measure};
 
@@ -15,13 +15,26 @@ impl Step {
     /// Every shape in it.
     fn shapes_mut(&mut self) -> Vec<&mut Shape> {
         let mut shapes: Vec<&mut Shape> = Vec::new();
+        match &mut self.method {
+            Method::Segments(segments) => shapes.extend(&mut segments.inside),
+            Method::Voxels(voxels) => {
+                shapes.extend(voxels.cling.as_mut().map(|cling| &mut cling.to));
+                shapes.extend(voxels.keep_from.as_mut().map(|(shape, _)| shape));
+            }
+            _ => {}
+        }
         match &mut self.space {
-            Space::Lattice(space) => {
+            None => {}
+            Some(Space::Voxels(space)) => {
+                shapes.push(&mut space.shape);
+                shapes.extend(&mut space.forbid);
+            }
+            Some(Space::Lattice(space)) => {
                 shapes.push(&mut space.shape);
                 shapes.extend(&mut space.forbid);
                 shapes.extend(space.fields.iter_mut().filter_map(measured));
             }
-            Space::Scatter(space) => {
+            Some(Space::Scatter(space)) => {
                 shapes.push(&mut space.shape);
                 shapes.extend(&mut space.forbid);
                 shapes.extend(space.clusters.as_mut().map(|clusters| &mut clusters.inside));

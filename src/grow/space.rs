@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::ScatterSpace;
+use super::{ScatterSpace, VoxelSpace};
 use crate::geom::Shape;
 use crate::graph::{CostField, Lattice, LatticeError, Mask, Neighbours, Weights, Window};
 use crate::math::{DVec3, Stream};
@@ -15,6 +15,8 @@ pub enum Space {
     Lattice(LatticeSpace),
     /// Among scattered nodes.
     Scatter(ScatterSpace),
+    /// In voxels.
+    Voxels(VoxelSpace),
 }
 
 impl Space {
@@ -24,6 +26,7 @@ impl Space {
         match self {
             Self::Lattice(space) => &space.shape,
             Self::Scatter(space) => &space.shape,
+            Self::Voxels(space) => &space.shape,
         }
     }
 
@@ -33,6 +36,7 @@ impl Space {
         match self {
             Self::Lattice(space) => space.up(),
             Self::Scatter(space) => space.up(),
+            Self::Voxels(_) => 2,
         }
     }
 

@@ -6,7 +6,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
-    ClustersSpec, DbmSpec, DlaSpec, FractalSpec, GrammarSpec, RefineSpec, RegionsSpec, RepeatSpec, Space, Step,
+    AttractorSpec, ClustersSpec, DbmSpec, DlaSpec, FractalSpec, GrammarSpec, RefineSpec, RegionsSpec, RepeatSpec,
+    SegmentsSpec, Space, Step, VoxelsSpec,
 };
 use crate::geom::ShapeSpec;
 use crate::graph::{FieldSpec, Neighbours, Weights};
@@ -52,6 +53,8 @@ pub enum NodesSpec {
     /// Irregular: Poisson-disc nodes, no two nearer than the spacing and with no room for another (Xu and Mould 2012,
     /// section 3.1).
     Scatter(ScatterSpec),
+    /// None: voxels, for growth by voxels (Greene 1989). What is forbidden in the space takes up voxels, and light.
+    Voxels(VoxelNodesSpec),
 }
 
 impl NodesSpec {
@@ -67,8 +70,18 @@ impl NodesSpec {
         match self {
             Self::Lattice(lattice) => lattice.neighbours.dimensions() == 2,
             Self::Scatter(scatter) => scatter.plane,
+            Self::Voxels(_) => false,
         }
     }
+}
+
+/// Voxels: the space is kept where something is in it, so that a large one costs little.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VoxelNodesSpec {
+    /// Side of a voxel, in scene units: no more than half as wide as the thinnest wall is thick.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+    pub side: f64,
 }
 
 /// Scattered nodes, joined to the nearest in each sector (a Yao graph) or within a radius.
@@ -103,15 +116,16 @@ pub struct LatticeSpec {
     pub neighbours: Neighbours,
 }
 
-/// One growth step: paths from generators to endpoints.
+/// One growth step: from generators, by paths to endpoints or in other ways.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StepSpec {
     /// Take everything that is not given here from the step of this name.
     #[serde(default)]
     pub like: Option<Ref<Step>>,
-    /// The space to plan in.
-    pub space: Ref<Space>,
+    /// The space to grow in; segments need none.
+    #[serde(default)]
+    pub space: Option<Ref<Space>>,
     /// Where paths start.
     pub from: FromSpec,
     /// Where paths go: sets of endpoints, by name. Aggregates and regions have none.
@@ -120,6 +134,9 @@ pub struct StepSpec {
     /// How limbs come about: by least-cost paths, unless said otherwise.
     #[serde(default)]
     pub by: MethodSpec,
+    /// A point that growth by segments and by voxels tends to, such as the sun.
+    #[serde(default)]
+    pub toward: Option<AttractorSpec>,
     /// Grow from every end again, round after round, each time in a space of its own: the shape of the space is then
     /// around the end, with its z along the way the limb came (Xu and Mould 2012, section 3.2).
     #[serde(default)]
@@ -203,6 +220,10 @@ pub enum MethodSpec {
     Fractal(FractalSpec),
     /// Not limbs but solids: all that is nearest to each generator (2007, section 3.4); on lattices.
     Regions(RegionsSpec),
+    /// By segments, a step of each limb at a time, without a graph (Amin's Growth module).
+    Segments(SegmentsSpec),
+    /// By a voxel space automaton that senses light, other growth and surfaces (Greene 1989).
+    Voxels(VoxelsSpec),
     /// By the dielectric breakdown model, as a baseline.
     Dbm(DbmSpec),
     /// By diffusion-limited aggregation, as a baseline.

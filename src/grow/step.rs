@@ -4,10 +4,11 @@ use std::collections::HashMap;
 
 use rustc_hash::FxHashMap;
 
+use super::automaton::grow_together;
 use super::construction::{Mark, MarkKind, construction};
 use super::{
     Dbm, DlaSpec, Endpoints, FractalSpec, LatticeSpace, Near, Placement, Refine, Regions, RegionsSpec, Repeat, SIDE,
-    Solver, Space, Unreached,
+    Segments, Solver, Space, Unreached, VoxelSpace, Voxels,
 };
 use crate::geom::Shape;
 use crate::graph::{Graph, Lattice, LatticeError, Node};
@@ -20,8 +21,8 @@ use crate::skeleton::{Form, Skeleton, SkeletonNode, SymmetrySpec, Width, bend, s
 pub struct Step {
     /// Its name in the scene.
     pub name: String,
-    /// The space to plan in.
-    pub space: Space,
+    /// The space to grow in; segments have none.
+    pub space: Option<Space>,
     /// The name of that space, for errors.
     pub space_name: String,
     /// Where paths start.
@@ -87,6 +88,10 @@ pub enum Method {
     Regions(RegionsSpec),
     /// By diffusion-limited aggregation.
     Dla(DlaSpec),
+    /// By segments, without a graph.
+    Segments(Segments),
+    /// By a voxel space automaton.
+    Voxels(Voxels),
     /// By the dielectric breakdown model.
     Dbm(Dbm),
 }
@@ -95,7 +100,7 @@ pub enum Method {
 type Wanted<'a> = (Node, Option<DVec3>, &'a Endpoints);
 
 /// What a step yields.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Grown {
     /// The step's name.
     pub name: String,
@@ -105,7 +110,7 @@ pub struct Grown {
     pub foot: Option<DVec3>,
     /// The level of its first round, counted through all steps before.
     pub first_level: u16,
-    /// Nodes of the graph.
+    /// Nodes of the graph, or voxels that something is in.
     pub nodes: u64,
     /// Edges of the graph, each counted once.
     pub edges: u64,
@@ -136,7 +141,7 @@ pub enum GrowError {
 }
 
 /// More nodes of a skeleton than this are not made of fewer.
-const MOST_NODES: u64 = 40_000_000;
+pub(super) const MOST_NODES: u64 = 40_000_000;
 /// Bytes that a node of a skeleton takes, with what is made of it.
 const NODE_BYTES: u64 = 256;
 
@@ -146,18 +151,28 @@ impl Step {
     pub fn bytes_needed(&self) -> u64 {
         let paths: u64 = self.endpoints.iter().map(|set| set.placement.count() as u64).sum();
         match &self.space {
-            Space::Scatter(space) => {
+            None => match &self.method {
+                Method::Segments(segments) => {
+                    (segments.expected(segments.starts).nodes.min(MOST_NODES as f64)) as u64 * NODE_BYTES
+                }
+                _ => 0,
+            },
+            Some(Space::Voxels(space)) => {
+                let nodes = if let Method::Voxels(voxels) = &self.method { u64::from(voxels.nodes) } else { 0 };
+                space.bytes_needed() + nodes * NODE_BYTES
+            }
+            Some(Space::Scatter(space)) => {
                 // A repeated step keeps sets of nodes, and makes some at a time.
                 let graphs = if self.repeat.is_some() { 20 } else { 1 };
                 space.bytes_needed().saturating_mul(graphs)
             }
-            Space::Lattice(space) => {
+            Some(Space::Lattice(space)) => {
                 let across: u64 = space.window.size.iter().map(|&s| u64::from(s)).sum();
                 // Paths share most of their nodes; they can never have more than the lattice has.
                 let skeleton = paths.saturating_mul(across).min(space.window.nodes()) * NODE_BYTES;
                 // What methods keep of each node beside the search.
                 let each = match &self.method {
-                    Method::Paths | Method::Dbm(_) => 0,
+                    Method::Paths | Method::Dbm(_) | Method::Segments(_) | Method::Voxels(_) => 0,
                     // The nearest node and how far it is, and the skeleton's node.
                     Method::Fractal(_) => 12,
                     Method::Dla(_) => 5,
@@ -198,9 +213,18 @@ impl Step {
         show: &[MarkKind],
         progress: &Progress,
     ) -> Result<Grown, GrowError> {
-        let space = match &self.space {
-            Space::Scatter(space) => return self.grow_scattered(space, seed, grown, show, progress),
-            Space::Lattice(space) => space,
+        let space = match (&self.space, &self.method) {
+            (_, Method::Segments(segments)) => {
+                let skeleton = self.grow_segments(segments, seed, grown, progress)?;
+                return self.free(skeleton, grown, 0);
+            }
+            (Some(Space::Scatter(space)), _) => return self.grow_scattered(space, seed, grown, show, progress),
+            (Some(Space::Lattice(space)), _) => space,
+            (Some(Space::Voxels(space)), _) => {
+                let all = Self::grow_together(&[self], space, &[], seed, grown, progress)?;
+                return Ok(all.into_iter().next().unwrap_or_default());
+            }
+            (None, _) => return Ok(Grown::default()),
         };
         match space.neighbours.count() {
             4 => self.grow_in::<4>(space, seed, grown, show, progress),
@@ -252,6 +276,8 @@ impl Step {
                 let settled = skeleton.nodes.len() as u64;
                 (skeleton, 0, settled, Vec::new())
             }
+            // These have no lattice.
+            Method::Segments(_) | Method::Voxels(_) => (Skeleton::new(self.classes.clone()), 0, 0, Vec::new()),
             Method::Paths => {
                 let goal = if show.contains(&MarkKind::Contours) { Goal::Everything } else { Goal::Nodes(&nodes) };
                 let later = self.delays(space, &lattice, &starts, grown);
@@ -300,6 +326,40 @@ impl Step {
             skeleton: self.finish(skeleton, grown)?,
             dropped,
             regions,
+        })
+    }
+
+    /// Do both grow in the voxels of one space?
+    #[must_use]
+    pub fn shares_voxels(&self, other: &Self) -> bool {
+        matches!(self.space, Some(Space::Voxels(_))) && self.space_name == other.space_name
+    }
+
+    /// Grows `steps`, which are all by voxels in `space`, together, among what `before` grew there.
+    ///
+    /// # Errors
+    /// [`GrowError::Scene`] where a limb starts outside of the space; [`GrowError::Cancelled`].
+    pub fn grow_together(
+        steps: &[&Self],
+        space: &VoxelSpace,
+        before: &[&Skeleton],
+        seed: u64,
+        grown: &[Option<&Skeleton>],
+        progress: &Progress,
+    ) -> Result<Vec<Grown>, GrowError> {
+        let (skeletons, voxels) = grow_together(steps, space, before, seed, grown, progress)?;
+        steps.iter().zip(skeletons).map(|(step, skeleton)| step.free(skeleton, grown, voxels)).collect()
+    }
+
+    /// What a step yields that no graph carries, in so many voxels.
+    fn free(&self, skeleton: Skeleton, grown: &[Option<&Skeleton>], voxels: u64) -> Result<Grown, GrowError> {
+        Ok(Grown {
+            name: self.name.clone(),
+            first_level: self.first_level(grown),
+            nodes: voxels,
+            settled: skeleton.nodes.len() as u64,
+            skeleton: self.finish(skeleton, grown)?,
+            ..Grown::default()
         })
     }
 

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use super::skin::MOST_PRIMITIVES;
 use super::{Digits, Mesh, Pose, SkinError};
 use crate::grow::{Canopy, sky};
-use crate::math::{DMat3, DVec2, DVec3, Degrees, Ref, Stream, rotation, turned_toward};
+use crate::math::{DMat3, DVec2, DVec3, Degrees, Point, Ref, Stream, rotation, turned_toward};
 use crate::model::Material;
 use crate::skeleton::{Skeleton, SkeletonNode};
 
@@ -19,7 +19,7 @@ const BALL: [u32; 2] = [6, 10];
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LeavesSpec {
-    /// `oak`, `oval`, `maple`, `birch`, `willow`, `needle`, `frond`, `blossom`, `ball`; or an SVG file beside the scene,
+    /// `oak`, `oval`, `maple`, `birch`, `willow`, `ivy`, `needle`, `frond`, `blossom`, `ball`; or an SVG file beside the scene,
     /// whose first closed outline is the leaf's, its stalk at the lowest point.
     #[schemars(length(min = 1))]
     pub shape: String,
@@ -52,6 +52,10 @@ pub struct LeavesSpec {
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 180.0))]
     pub droop: Degrees,
+    /// Leaves lie across this direction, their upper side that way: those of ivy away from the wall. By default the upper side
+    /// faces up as far as the leaf's own way allows.
+    #[serde(default)]
+    pub facing: Option<Point>,
     /// How far the halves of a leaf are folded up along its middle.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 80.0))]
@@ -220,8 +224,10 @@ impl LeavesSpec {
         let side = rotation(way, turn.radians()) * way.any_orthonormal_vector();
         let along = turned_toward(way, side, self.angle.radians());
         let along = turned_toward(along, DVec3::NEG_Z, self.droop.radians());
-        // The upper side faces up as far as it can, and a little to either side.
-        let across = along.cross(DVec3::Z).normalize_or(along.any_orthonormal_vector());
+        let facing = self.facing.map_or(DVec3::Z, |p| p.0);
+        let along = if self.facing.is_some() { facing.cross(along).cross(facing).normalize_or(along) } else { along };
+        // The upper side faces there as far as it can, and a little to either side.
+        let across = along.cross(facing).normalize_or(along.any_orthonormal_vector());
         let across = rotation(along, (roll - 0.5) * 0.9) * across;
         Pose::new(digits.round_point(at), DMat3::from_cols(across, along, across.cross(along)) * size)
     }

@@ -1,5 +1,6 @@
 //! The way through the house: steps are grown, skeletons dressed, the model put together.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
@@ -22,7 +23,7 @@ pub enum Stage {
     Scene(#[from] SceneError),
     /// It would take more memory than allowed.
     #[error(
-        "the scene needs about {} MB of memory, more than the {} MB allowed: use a wider spacing, or raise --max-memory",
+        "the scene needs about {} MB of memory, more than the {} MB allowed: use a wider spacing or fewer nodes, or raise --max-memory",
         needed.div_ceil(1_000_000), limit / 1_000_000
     )]
     Memory {
@@ -65,7 +66,7 @@ pub fn grow(scene: &Resolved, show: &[MarkKind], max_memory: u64, progress: &Pro
             ready.into_iter().partition(|&i| scene.steps[i].repeat.is_some());
         for i in repeated {
             let step = &scene.steps[i];
-            if let (Some(repeat), Space::Scatter(space)) = (&step.repeat, &step.space) {
+            if let (Some(repeat), Some(Space::Scatter(space))) = (&step.repeat, &step.space) {
                 growing.insert(i, Rounds::new(step, repeat, space, scene.seed, &earlier).map_err(told)?);
             }
         }
@@ -75,25 +76,43 @@ pub fn grow(scene: &Resolved, show: &[MarkKind], max_memory: u64, progress: &Pro
             growing.values().map(|rounds| rounds.clumps().map(|clump| Canopy::new(&world, clump)).collect()).collect()
         };
         let solids = |i: usize| grown[i].as_ref()?.regions.as_ref().map(Regions::solid);
-        let grow = |&i: &usize| {
-            let step = &scene.steps[i];
-            if step.solids().is_empty() {
-                return step.grow(scene.seed, &earlier, show, progress);
+        // Those in the same voxels grow together, the others alone.
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for i in round {
+            let is_joined = |group: &&mut Vec<usize>| scene.steps[group[0]].shares_voxels(&scene.steps[i]);
+            match groups.iter_mut().find(is_joined) {
+                Some(group) => group.push(i),
+                None => groups.push(vec![i]),
             }
-            step.with_solids(&solids).grow(scene.seed, &earlier, show, progress)
+        }
+        let grow = |group: &Vec<usize>| -> Result<Vec<Grown>, GrowError> {
+            let steps: Vec<Cow<'_, Step>> = group
+                .iter()
+                .map(|&i| {
+                    let step = &scene.steps[i];
+                    if step.solids().is_empty() { Cow::Borrowed(step) } else { Cow::Owned(step.with_solids(&solids)) }
+                })
+                .collect();
+            let Some(Space::Voxels(space)) = &steps[0].space else {
+                return steps.iter().map(|step| step.grow(scene.seed, &earlier, show, progress)).collect();
+            };
+            let steps: Vec<&Step> = steps.iter().map(AsRef::as_ref).collect();
+            let before = (0..grown.len()).filter(|&i| scene.steps[i].shares_voxels(steps[0]));
+            let before: Vec<&Skeleton> = before.filter_map(|i| earlier[i]).collect();
+            Step::grow_together(&steps, space, &before, scene.seed, &earlier, progress)
         };
         // Side by side where memory allows; the result is the same.
-        let together: u64 = round.iter().map(|&i| scene.steps[i].bytes_needed()).sum();
-        let finished: Result<Vec<Grown>, GrowError> = if together <= max_memory {
-            round.par_iter().map(grow).collect()
+        let together: u64 = groups.iter().flatten().map(|&i| scene.steps[i].bytes_needed()).sum();
+        let finished: Result<Vec<Vec<Grown>>, GrowError> = if together <= max_memory {
+            groups.par_iter().map(grow).collect()
         } else {
-            round.iter().map(grow).collect()
+            groups.iter().map(grow).collect()
         };
         let finished = finished.map_err(told)?;
         for (rounds, canopies) in growing.values_mut().zip(&canopies) {
             rounds.advance(canopies, show, max_memory, progress).map_err(told)?;
         }
-        round.into_iter().zip(finished).for_each(|(i, step)| grown[i] = Some(step));
+        groups.into_iter().flatten().zip(finished.into_iter().flatten()).for_each(|(i, step)| grown[i] = Some(step));
         let done: Vec<usize> = growing.iter().filter(|(_, rounds)| rounds.is_done()).map(|(&i, _)| i).collect();
         for i in done {
             if let Some(rounds) = growing.remove(&i) {

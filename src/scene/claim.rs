@@ -5,10 +5,12 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::geom::Surface;
-use crate::grow::{Grown, Step};
+use super::Resolved;
+use super::resolve::Resolver;
+use crate::geom::{Shape, ShapeSpec, Surface};
+use crate::grow::{Grown, Regions, Step};
 use crate::math::{DVec3, Ref};
-use crate::skeleton::{Skeleton, apart, crossings, dimension, floating, measure_from, shared_ends};
+use crate::skeleton::{Skeleton, apart, crossings, dimension, floating, measure_from, nearest, shared_ends};
 
 /// A claim about a step: one quantity, and what it is held against.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -40,9 +42,21 @@ pub struct Claim {
     #[serde(default = "one")]
     #[schemars(range(min = 1.0, max = 1e6))]
     pub times: f64,
-    /// For `shared`, `floating`, `crossings`, `apart` and `dimension`: the other step.
+    /// For `shared`, `floating`, `crossings`, `apart`, `nearest` and `dimension`: the other step.
     #[serde(default)]
     pub with: Option<Ref<Step>>,
+    /// For `nearest`, `farthest` and `inside`: the shape.
+    #[serde(default)]
+    pub shape: Option<ShapeSpec>,
+}
+
+/// A claim whose shape is resolved.
+#[derive(Clone, Debug)]
+pub struct Claimed {
+    /// The claim.
+    pub claim: Claim,
+    /// Its shape.
+    pub shape: Option<Shape>,
 }
 
 fn one() -> f64 {
@@ -89,6 +103,12 @@ pub enum Quantity {
     Crossings,
     /// The greatest distance from the limbs of the step `with`.
     Apart,
+    /// The least distance of a node from `shape`, negative inside of it, or from the limbs of the step `with`.
+    Nearest,
+    /// The greatest distance of a node from `shape`.
+    Farthest,
+    /// The share of the nodes that lie in `shape`.
+    Inside,
     /// How many directions limbs take in the plane.
     Directions,
     /// How different ways to the ends are in length.
@@ -128,9 +148,11 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    fn of(self, grown: &Grown, with: Option<&Skeleton>) -> f64 {
+    fn of(self, grown: &Grown, with: Option<&Skeleton>, shape: Option<&Shape>) -> f64 {
         let skeleton = &grown.skeleton;
         let m = measure_from(skeleton, grown.foot);
+        let distances = |shape: &Shape| -> Vec<f64> { skeleton.nodes.iter().map(|n| shape.distance(n.position)).collect() };
+        let least = |d: Vec<f64>| d.into_iter().fold(f64::INFINITY, f64::min);
         match self {
             Self::Directions => m.directions as f64,
             Self::LengthVariation => m.length_variation,
@@ -181,6 +203,15 @@ impl Quantity {
             Self::Apart => with.map_or(f64::INFINITY, |with| apart(skeleton, with)),
             Self::Dimension => with.map_or(m.dimension, |with| dimension(&[skeleton, with])),
             Self::Crossings => crossings(skeleton, with.unwrap_or(skeleton)) as f64,
+            Self::Nearest => match (shape, with) {
+                (Some(shape), _) => least(distances(shape)),
+                (None, with) => with.map_or(f64::NAN, |with| nearest(skeleton, with)),
+            },
+            Self::Farthest => shape.map_or(f64::NAN, |shape| -least(distances(shape).into_iter().map(|d| -d).collect())),
+            Self::Inside => shape.map_or(f64::NAN, |shape| {
+                let count = distances(shape).into_iter().filter(|&d| d <= 0.0).count();
+                count as f64 / skeleton.nodes.len().max(1) as f64
+            }),
         }
     }
 }
@@ -234,13 +265,54 @@ pub struct Finding {
     pub holds: bool,
 }
 
+impl Resolver<'_> {
+    /// The claims, with their shapes.
+    pub(super) fn claims(&mut self) -> Option<BTreeMap<String, Claimed>> {
+        let mut claims = BTreeMap::new();
+        for (name, claim) in &self.scene.claim {
+            let place = format!("claim.{name}");
+            for (key, step) in [
+                ("of", Some(&claim.of)),
+                ("more_than", claim.more_than.as_ref()),
+                ("as_of", claim.as_of.as_ref()),
+                ("with", claim.with.as_ref()),
+            ] {
+                if let Some(step) = step {
+                    self.find(&format!("{place}.{key}"), "step", step, self.scene.grow.keys());
+                }
+            }
+            let others = [claim.more_than.as_ref(), claim.as_of.as_ref()];
+            if claim.at_least.is_none() && claim.at_most.is_none() && others.iter().all(Option::is_none) {
+                self.wrong(&place, "a claim needs `at_least`, `at_most`, `more_than` or `as_of`".to_owned());
+            }
+            let is_short = match claim.measure {
+                Quantity::Farthest | Quantity::Inside => claim.shape.is_none(),
+                Quantity::Nearest => claim.shape.is_none() && claim.with.is_none(),
+                _ => false,
+            };
+            if is_short {
+                self.wrong(&place, "this is measured from a `shape`".to_owned());
+            }
+            let shape = match &claim.shape {
+                Some(shape) => Some(self.shape(&format!("{place}.shape"), shape)?),
+                None => None,
+            };
+            claims.insert(name.clone(), Claimed { claim: claim.clone(), shape });
+        }
+        Some(claims)
+    }
+}
+
 /// Measures every claim on the steps that were grown.
 #[must_use]
-pub fn check_claims(claims: &BTreeMap<String, Claim>, grown: &[Grown]) -> Vec<Finding> {
+pub fn check_claims(scene: &Resolved, grown: &[Grown]) -> Vec<Finding> {
+    let solids = |i: usize| grown[i].regions.as_ref().map(Regions::solid);
     let step = |name: &Ref<Step>| grown.iter().find(|g| g.name == name.name);
-    let findings = claims.iter().filter_map(|(name, claim)| {
+    let findings = scene.claims.iter().filter_map(|(name, Claimed { claim, shape })| {
         let with = claim.with.as_ref().and_then(step).map(|g| &g.skeleton);
-        let measured = claim.measure.of(step(&claim.of)?, with);
+        let shape = shape.as_ref().map(|shape| shape.with_grown(&solids));
+        let measure = |step: &Grown, with| claim.measure.of(step, with, shape.as_ref());
+        let measured = measure(step(&claim.of)?, with);
         let mut against = Vec::new();
         let mut holds = true;
         if let Some(least) = claim.at_least {
@@ -252,12 +324,12 @@ pub fn check_claims(claims: &BTreeMap<String, Claim>, grown: &[Grown]) -> Vec<Fi
             holds &= measured <= most;
         }
         if let Some(other) = &claim.as_of {
-            let same = claim.measure.of(step(other)?, None);
+            let same = measure(step(other)?, None);
             against.push(format!("{same:.4} of `{}` to {}", other.name, claim.within));
             holds &= (measured - same).abs() <= claim.within;
         }
         if let Some(other) = &claim.more_than {
-            let than = claim.measure.of(step(other)?, None);
+            let than = measure(step(other)?, None);
             against.push(format!("more than {} times {than:.4} of `{}`", claim.times, other.name));
             holds &= measured > than * claim.times;
         }

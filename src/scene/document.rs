@@ -49,7 +49,8 @@ pub struct Scene {
     /// Shapes, by name.
     #[serde(default)]
     pub shape: BTreeMap<String, ShapeSpec>,
-    /// Graphs to plan in, by name.
+    /// Spaces to grow in, by name.
+    #[serde(default)]
     pub space: BTreeMap<String, SpaceSpec>,
     /// Growth steps, by name.
     pub grow: BTreeMap<String, StepSpec>,

@@ -25,7 +25,7 @@ pub(super) fn dress(
         (None, Skin::Isosurface(spec)) => {
             let solids = |i: usize| grown[i].regions.as_ref().map(Regions::solid);
             let step = plan.steps.first().map(|&step| scene.steps[step].with_solids(&solids));
-            let space = step.as_ref().and_then(|step| step.space.lattice());
+            let space = step.as_ref().and_then(|step| step.space.as_ref()?.lattice());
             let progress = Progress::default();
             let surface = isosurface(&spec, skeletons, space, scene.is_flat, scene.seed, &progress);
             let surface = surface.map_err(|error| match error {

@@ -11,6 +11,8 @@ use crate::math::{PerRound, unknown};
 const MOST_DBM: u64 = 4 << 20;
 /// Fields that keep eight bytes a node, and walks that keep some: no more nodes than this.
 const MOST_DENSE: u64 = 1 << 27;
+/// The class of limbs that have no endpoints.
+const MAIN: &str = "main";
 
 /// What the shapes of a scene may name: files beside it, and its steps.
 pub(super) struct Names<'a> {
@@ -42,8 +44,9 @@ impl ShapeFiles for Names<'_> {
         if !matches!(step.by, MethodSpec::Regions(_)) {
             return Err(format!("step `{name}` grows limbs: only steps with `by.regions` are shapes"));
         }
-        let space = self.scene.space.get(&step.space.name);
-        let space = space.ok_or_else(|| unknown("space", &step.space.name, self.scene.space.keys()))?;
+        let of = step.space.as_ref().map_or("", |space| &space.name);
+        let space = self.scene.space.get(of);
+        let space = space.ok_or_else(|| unknown("space", of, self.scene.space.keys()))?;
         Ok((index, space.shape.clone()))
     }
 }
@@ -56,13 +59,29 @@ impl Resolver<'_> {
         spec: &StepSpec,
         space: Option<&Space>,
         classes: &mut Vec<String>,
-    ) -> Method {
+    ) -> Option<Method> {
         let lattice = space.and_then(Space::lattice);
         let nodes = lattice.map_or(0, |space| space.window.nodes());
         let is_paths = spec.by == MethodSpec::Paths;
-        if !is_paths && space.is_some() && lattice.is_none() {
-            let message = "only paths are planned among scattered nodes: this needs a lattice".to_owned();
-            self.wrong(&format!("{place}.by"), message);
+        let is_free = matches!(spec.by, MethodSpec::Segments(_) | MethodSpec::Voxels(_));
+        match (&spec.by, space) {
+            (_, None) | (MethodSpec::Voxels(_), Some(Space::Voxels(_))) => {}
+            (MethodSpec::Voxels(_), Some(_)) => {
+                self.wrong(&format!("{place}.space"), "growth by voxels needs a space with `nodes.voxels`".to_owned());
+            }
+            (_, Some(Space::Voxels(_))) => {
+                let message = "in voxels there is nothing but growth `by.voxels`".to_owned();
+                self.wrong(&format!("{place}.space"), message);
+            }
+            (_, Some(_)) if !is_paths && lattice.is_none() => {
+                let message = "only paths are planned among scattered nodes: this needs a lattice".to_owned();
+                self.wrong(&format!("{place}.by"), message);
+            }
+            _ => {}
+        }
+        if spec.toward.is_some() && !is_free {
+            let message = "an attractor is for growth by segments and by voxels".to_owned();
+            self.wrong(&format!("{place}.toward"), message);
         }
         let mut without = |key: &str, is_given: bool, what: &str| {
             if is_given {
@@ -74,6 +93,8 @@ impl Resolver<'_> {
             MethodSpec::Fractal(_) => "fractal placement has",
             MethodSpec::Regions(_) => "regions have",
             MethodSpec::Dbm(_) | MethodSpec::Dla(_) => "an aggregate has",
+            MethodSpec::Segments(_) => "growth by segments has",
+            MethodSpec::Voxels(_) => "growth by voxels has",
         };
         if !is_paths {
             without("repeat", spec.repeat.is_some(), what);
@@ -101,14 +122,19 @@ impl Resolver<'_> {
         let limit = match &spec.by {
             MethodSpec::Dbm(_) => MOST_DBM,
             MethodSpec::Fractal(_) | MethodSpec::Regions(_) | MethodSpec::Dla(_) => MOST_DENSE,
-            MethodSpec::Paths => u64::MAX,
+            MethodSpec::Paths | MethodSpec::Segments(_) | MethodSpec::Voxels(_) => u64::MAX,
         };
         if nodes > limit {
             let message = format!("this way of growing takes {limit} nodes at most, not {nodes}: use a wider spacing");
             self.wrong(&format!("{place}.space"), message);
         }
-        match &spec.by {
+        if is_free {
+            classes.push(MAIN.to_owned());
+        }
+        Some(match &spec.by {
             MethodSpec::Paths => Method::Paths,
+            MethodSpec::Segments(segments) => Method::Segments(self.segments(place, spec, segments)?),
+            MethodSpec::Voxels(voxels) => Method::Voxels(self.voxels(place, spec, voxels)?),
             MethodSpec::Fractal(fractal) => {
                 for (key, set) in &spec.to {
                     if set.count.is_none() || set.near.is_some() || set.shell.is_some() {
@@ -136,7 +162,7 @@ impl Resolver<'_> {
                 classes.dedup();
                 Method::Dbm(*dbm)
             }
-        }
+        })
     }
 
     /// Generators at random.
@@ -145,7 +171,11 @@ impl Resolver<'_> {
             Some(inside) => Some(self.shape(&format!("{place}.from.spread.inside"), inside)?),
             None => None,
         };
-        let is_lattice = self.scene.space.get(&spec_of.space.name).is_none_or(|space| space.nodes.is_lattice());
+        let is_lattice = spec_of
+            .space
+            .as_ref()
+            .and_then(|space| self.scene.space.get(&space.name))
+            .is_none_or(|space| space.nodes.is_lattice());
         if !is_lattice {
             let message = "random generators need a lattice: list them with `from.at`".to_owned();
             self.wrong(&format!("{place}.from.spread"), message);

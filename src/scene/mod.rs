@@ -6,6 +6,7 @@ mod animation;
 mod build;
 mod claim;
 mod document;
+mod growth;
 mod dress;
 mod methods;
 mod mistake;
@@ -18,7 +19,7 @@ mod validate;
 
 pub use animation::TrackSpec;
 pub use build::{Stage, grow, model};
-pub use claim::{Claim, Finding, Quantity, check_claims};
+pub use claim::{Claim, Claimed, Finding, Quantity, check_claims};
 pub use document::{LightsSpec, ObjectSpec, Scene};
 pub use mistake::{Mistake, SceneError};
 pub use resolve::{ObjectPlan, Resolved, View};

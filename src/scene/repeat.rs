@@ -27,7 +27,7 @@ impl Resolver<'_> {
         space: Option<&Space>,
     ) -> Option<Repeat> {
         let at = |key: &str| format!("{place}.repeat.{key}");
-        if space?.lattice().is_some() {
+        if !matches!(space?, Space::Scatter(_)) {
             let message = "a repeated step needs scattered nodes (`nodes.scatter`) in its space".to_owned();
             self.wrong(&format!("{place}.space"), message);
         }

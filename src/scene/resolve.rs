@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::methods::Names;
 use super::tree::Entry;
-use super::{Claim, LightsSpec, Mistake, ObjectSpec, Scene, SceneError, Source};
+use super::{Claimed, LightsSpec, Mistake, ObjectSpec, Scene, SceneError, Source};
 use crate::files::{
     Folder, decode_grey, decode_linear, decode_mesh, decode_panorama, decode_plate, decode_sketch, leaf_names,
     resize_grey, resize_plate,
@@ -52,7 +52,7 @@ pub struct Resolved {
     /// What is behind everything.
     pub sky: Sky,
     /// What it claims.
-    pub claims: BTreeMap<String, Claim>,
+    pub claims: BTreeMap<String, Claimed>,
     source: Source,
     tree: Entry,
 }
@@ -154,7 +154,7 @@ pub(super) fn resolve(
         let shape = spec.resolve(&scene.shape, &Names { folder: r.folder, scene: &scene });
         r.note(&format!("shape.{name}"), shape);
     }
-    let is_flat = r.is_flat();
+    let is_flat = r.same_kind();
     let spaces: BTreeMap<&String, Option<Space>> =
         scene.space.iter().map(|(name, spec)| (name, r.space(name, spec))).collect();
     let steps: Vec<Option<Step>> = scene.grow.iter().map(|(name, spec)| r.step(name, spec, &spaces, pixel)).collect();
@@ -167,23 +167,8 @@ pub(super) fn resolve(
     let objects: Vec<Option<ObjectPlan>> =
         scene.object.iter().map(|(name, spec)| r.object(name, spec, &materials, is_flat)).collect();
     let lights = r.lights(is_flat);
-    for (name, claim) in &scene.claim {
-        for (key, step) in [
-            ("of", Some(&claim.of)),
-            ("more_than", claim.more_than.as_ref()),
-            ("as_of", claim.as_of.as_ref()),
-            ("with", claim.with.as_ref()),
-        ] {
-            if let Some(step) = step {
-                r.find(&format!("claim.{name}.{key}"), "step", step, scene.grow.keys());
-            }
-        }
-        let others = [claim.more_than.as_ref(), claim.as_of.as_ref()];
-        if claim.at_least.is_none() && claim.at_most.is_none() && others.iter().all(Option::is_none) {
-            r.wrong(&format!("claim.{name}"), "a claim needs `at_least`, `at_most`, `more_than` or `as_of`".to_owned());
-        }
-    }
-    for (empty, key) in [(steps.is_empty(), "grow"), (objects.is_empty(), "object"), (spaces.is_empty(), "space")] {
+    let claims = r.claims();
+    for (empty, key) in [(steps.is_empty(), "grow"), (objects.is_empty(), "object")] {
         if empty {
             r.wrong(key, format!("a scene needs at least one `[{key}.NAME]`"));
         }
@@ -210,7 +195,7 @@ pub(super) fn resolve(
         view,
         show: scene.show,
         ground: scene.ground,
-        claims: scene.claim,
+        claims: claims?,
     })
 }
 
@@ -245,11 +230,16 @@ impl Resolver<'_> {
         self.note(place, shape)
     }
 
-    /// All spaces are flat, or none is.
-    fn is_flat(&mut self) -> bool {
+    /// Is the scene flat?
+    pub fn is_flat(&self) -> bool {
+        self.scene.space.values().next().is_some_and(|spec| spec.nodes.is_plane())
+    }
+
+    /// All spaces are flat, or none is: which.
+    fn same_kind(&mut self) -> bool {
         let scene = self.scene;
         let flat = |spec: &SpaceSpec| spec.nodes.is_plane();
-        let is_flat = scene.space.values().next().is_some_and(flat);
+        let is_flat = self.is_flat();
         if let Some((name, _)) = scene.space.iter().find(|(_, spec)| flat(spec) != is_flat) {
             let message = "a scene's spaces are all flat (lattices with 4 or 8 neighbours, scattered nodes with `plane = true`) or all in space".to_owned();
             self.wrong(&format!("space.{name}.nodes"), message);

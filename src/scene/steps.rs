@@ -7,10 +7,10 @@ use super::methods::is_first;
 use super::resolve::Resolver;
 use crate::files::{decode_grey, decode_sketch};
 use crate::geom::{Bounds, Shape, Strokes};
-use crate::graph::{CostField, FieldSpec, FieldUse, HeightEnd, Joining, Measure, MeasureSpec, Sectors};
+use crate::graph::{CostField, FieldSpec, FieldUse, HeightEnd, Joining, Measure, MeasureSpec, Sectors, Weights};
 use crate::grow::{
-    Clusters, EndpointSpec, Endpoints, FromSpec, LatticeSpace, LatticeSpec, Near, NearSpec, NodesSpec, Part, Placement,
-    ScatterSpace, ScatterSpec, Source as Generators, Space, SpaceSpec, Step, StepSpec,
+    Clusters, EndpointSpec, Endpoints, FromSpec, LatticeSpace, LatticeSpec, MethodSpec, Near, NearSpec, NodesSpec, Part, Placement,
+    ScatterSpace, ScatterSpec, Source as Generators, Space, SpaceSpec, Step, StepSpec, VoxelNodesSpec, VoxelSpace,
 };
 use crate::math::{DVec2, DVec3, PerRound, Point};
 use crate::skeleton::Width;
@@ -55,6 +55,20 @@ impl Resolver<'_> {
                 let window = LatticeSpace::window(&shape, spacing, neighbours);
                 let window = self.note(&format!("{place}.nodes.lattice.spacing"), window)?;
                 Some(Space::Lattice(LatticeSpace { shape, forbid, window, neighbours, weights, fields, stream }))
+            }
+            NodesSpec::Voxels(VoxelNodesSpec { side }) => {
+                let given = [
+                    ("weights", spec.weights != Weights::default()),
+                    ("field", !spec.field.is_empty()),
+                    ("clusters", spec.clusters.is_some()),
+                    ("stream", spec.stream.is_some()),
+                ];
+                for (key, _) in given.iter().filter(|(_, is_given)| *is_given) {
+                    self.wrong(&format!("{place}.{key}"), format!("voxels have no `{key}`: nothing is planned in them"));
+                }
+                let space = VoxelSpace { shape, forbid, side };
+                self.note(&format!("{place}.nodes.voxels"), space.check())?;
+                Some(Space::Voxels(space))
             }
             NodesSpec::Scatter(ScatterSpec { spacing, sectors, radius, plane }) => {
                 let joining = match (sectors, radius) {
@@ -213,8 +227,23 @@ impl Resolver<'_> {
         pixel: Option<f64>,
     ) -> Option<Step> {
         let place = format!("grow.{name}");
-        self.find(&format!("{place}.space"), "space", &spec.space, self.scene.space.keys());
-        let space = spaces.get(&spec.space.name).cloned().flatten();
+        let is_free = matches!(spec.by, MethodSpec::Segments(_));
+        let space = match &spec.space {
+            Some(name) => {
+                self.find(&format!("{place}.space"), "space", name, self.scene.space.keys());
+                if is_free {
+                    let message = "growth by segments needs no space: it stays `inside` a shape".to_owned();
+                    self.wrong(&format!("{place}.space"), message);
+                }
+                spaces.get(&name.name).cloned().flatten()
+            }
+            None => {
+                if !is_free {
+                    self.wrong(&format!("{place}.space"), "this way of growing needs a `space`".to_owned());
+                }
+                None
+            }
+        };
         let mut classes: Vec<String> = spec.to.values().map(|set| set.class.clone()).collect();
         classes.sort();
         classes.dedup();
@@ -278,12 +307,12 @@ impl Resolver<'_> {
             .collect();
         let step = Step {
             name: name.to_owned(),
-            space: space?,
-            space_name: spec.space.name.clone(),
+            space: if is_free { None } else { Some(space?) },
+            space_name: spec.space.as_ref().map_or_else(String::new, |space| space.name.clone()),
             source: source?,
             endpoints: sets.into_iter().collect::<Option<_>>()?,
             classes,
-            method,
+            method: method?,
             along: spec.along,
             refine,
             repeat,

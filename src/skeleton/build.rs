@@ -44,6 +44,18 @@ pub struct Path {
     pub class: u16,
     /// The node that it was planned from: the root of its graph.
     pub root: u32,
+    /// What tells it from all other paths, whatever else grows: the random numbers of what grows on from its end depend on
+    /// it.
+    pub name: u64,
+}
+
+/// The nodes of a path that no path before it has.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Limb {
+    /// The node of an earlier path where it starts, and the index of that path; `None` where it starts at a root.
+    pub leaves: Option<(u32, u32)>,
+    /// Its own nodes, from the first to its end.
+    pub nodes: Vec<u32>,
 }
 
 /// A forest of nodes; parents precede children.
@@ -87,7 +99,8 @@ impl Skeleton {
             self.nodes.push(SkeletonNode::new(position, parent, cost, class));
             parent = Some(at);
         }
-        self.paths.extend(parent.map(|end| Path { end, class, root: 0 }));
+        let name = self.paths.len() as u64;
+        self.paths.extend(parent.map(|end| Path { end, class, root: 0, name }));
     }
 
     /// Gives every tree of the forest an age and a largest radius, told by `start` from its root.
@@ -151,15 +164,49 @@ impl Skeleton {
     /// The ends of paths, once each, with the way to each from the root of its graph: all of them, or those that no other
     /// path was planned from.
     pub fn ends(&self, every: bool) -> impl Iterator<Item = (u32, DVec3)> + '_ {
+        self.end_paths(every).map(|path| {
+            let Path { end, root, .. } = self.paths[path];
+            (end, self.nodes[end as usize].position - self.nodes[root as usize].position)
+        })
+    }
+
+    /// The paths whose ends those are, by index.
+    pub fn end_paths(&self, every: bool) -> impl Iterator<Item = usize> + '_ {
         let mut is_kept = vec![true; self.nodes.len()];
         if !every {
             self.paths.iter().filter(|path| path.root != path.end).for_each(|path| is_kept[path.root as usize] = false);
         }
-        self.paths.iter().filter_map(move |path| {
-            let kept = std::mem::replace(&mut is_kept[path.end as usize], false);
-            let way = self.nodes[path.end as usize].position - self.nodes[path.root as usize].position;
-            kept.then_some((path.end, way))
-        })
+        (0..self.paths.len())
+            .filter(move |&path| std::mem::replace(&mut is_kept[self.paths[path].end as usize], false))
+    }
+
+    /// The way of the segment that ends at this node, of length 1; none at a root.
+    #[must_use]
+    pub fn way_into(&self, node: u32) -> Option<DVec3> {
+        let SkeletonNode { position, parent, .. } = self.nodes[node as usize];
+        (position - self.nodes[parent? as usize].position).try_normalize()
+    }
+
+    /// What each path adds to those before it.
+    #[must_use]
+    pub fn limbs(&self) -> Vec<Limb> {
+        let mut owner: Vec<Option<u32>> = vec![None; self.nodes.len()];
+        let limb = |(path, name): (&Path, u32)| {
+            let mut limb = Limb::default();
+            let mut next = Some(path.end);
+            while let Some(at) = next {
+                if let Some(other) = owner[at as usize] {
+                    limb.leaves = Some((at, other));
+                    break;
+                }
+                owner[at as usize] = Some(name);
+                limb.nodes.push(at);
+                next = self.nodes[at as usize].parent;
+            }
+            limb.nodes.reverse();
+            limb
+        };
+        self.paths.iter().zip(0..).map(limb).collect()
     }
 
     /// The nodes with their parents, roots left out.

@@ -17,13 +17,13 @@ mod strands;
 mod symmetry;
 mod width;
 
-pub use build::{Path, Skeleton, SkeletonNode};
+pub use build::{Limb, Path, Skeleton, SkeletonNode};
 pub use dimension::dimension;
 pub use form::{Form, FormSpec};
 pub use measure::{Measurement, measure, measure_from};
 pub use order::Orders;
 pub use plant::{Part, Plant};
-pub use relate::{apart, crossings, floating, shared_ends};
+pub use relate::{apart, crossings, floating, nearest, shared_ends};
 pub use smooth::smooth;
 pub use spline::{bend, overlap};
 pub use symmetry::SymmetrySpec;

@@ -59,16 +59,24 @@ fn cross(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> bool {
 /// The greatest distance of a node of `of` from the limbs of `from`; infinite where these are none.
 #[must_use]
 pub fn apart(of: &Skeleton, from: &Skeleton) -> f64 {
-    let nearest = |p: DVec3| {
-        from.segments()
-            .map(|(a, b)| {
-                let way = b.position - a.position;
-                let along = ((p - a.position).dot(way) / way.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-                (a.position + way * along).distance(p)
-            })
-            .fold(f64::INFINITY, f64::min)
-    };
-    of.nodes.iter().map(|n| nearest(n.position)).fold(0.0, f64::max)
+    of.nodes.iter().map(|n| distance(n.position, from)).fold(0.0, f64::max)
+}
+
+/// The least distance of a node of `of` from the limbs of `from`; infinite where these are none.
+#[must_use]
+pub fn nearest(of: &Skeleton, from: &Skeleton) -> f64 {
+    of.nodes.iter().map(|n| distance(n.position, from)).fold(f64::INFINITY, f64::min)
+}
+
+/// The distance of `p` from the limbs of `from`.
+fn distance(p: DVec3, from: &Skeleton) -> f64 {
+    from.segments()
+        .map(|(a, b)| {
+            let way = b.position - a.position;
+            let along = ((p - a.position).dot(way) / way.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            (a.position + way * along).distance(p)
+        })
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// The share of the ends of `of` that are ends of `with` too.

@@ -34,7 +34,7 @@ impl Skeleton {
                 let position = a.position + (b.position - a.position) * share;
                 strands.nodes.push(SkeletonNode { position, parent, cost, age: cost, class: path.class, ..*way[0] });
             }
-            strands.paths.push(Path { end: strands.nodes.len() as u32 - 1, class: path.class, root });
+            strands.paths.push(Path { end: strands.nodes.len() as u32 - 1, root, ..*path });
         }
         strands
     }

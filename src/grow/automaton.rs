@@ -1,0 +1,350 @@
+//! The voxel space automaton (Greene 1989): limbs sense light, other growth and surfaces, and grow in rounds, each against what
+//! the rounds before made.
+
+use rand::RngExt;
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+
+use super::neighbourhood::{Near, Neighbourhood};
+use super::segments::{Attractor, strayed};
+use super::starts::{Start, branch_name};
+use super::{GrowError, LightSense, Source, Step, VoxelSpace};
+use crate::geom::{Occupancy, Shape};
+use crate::math::{DVec3, Progress, Stream};
+use crate::skeleton::{Path, Skeleton, SkeletonNode};
+
+/// Rays start so many voxels, and the foliage, away from their limb: it does not shade itself.
+const OFF: f64 = 1.5;
+/// Other growth counts up to this many times the least distance from it.
+const ROOM: f64 = 4.0;
+/// A direction that is bent to a surface keeps at least this share of its step, and grows to no more than the other.
+const BENT: [f64; 2] = [0.5, 1.5];
+/// How often a direction is bent, and a point where a limb starts.
+const BENDS: usize = 3;
+const START_BENDS: usize = 16;
+
+/// Growth by voxels, with its names resolved; angles are in radians.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Voxels {
+    /// How far a limb grows in a round, in scene units.
+    pub step: f64,
+    /// Rounds.
+    pub rounds: u32,
+    /// Nodes at most.
+    pub nodes: u32,
+    /// Directions that a limb tries.
+    pub tries: u32,
+    /// Least and greatest angle of these from its way.
+    pub turn: [f64; 2],
+    /// Least and greatest age at which limbs branch, and the angle.
+    pub branches: Option<([u32; 2], [f64; 2])>,
+    /// Least distance from other growth.
+    pub apart: f64,
+    /// What it counts to be far from that.
+    pub room: f64,
+    /// What it counts to go straight on.
+    pub straight: f64,
+    /// What light counts.
+    pub light: LightSense,
+    /// How far leaves reach around every node.
+    pub foliage: f64,
+    /// What it clings to.
+    pub cling: Option<Cling>,
+    /// What it keeps from, and how far.
+    pub keep_from: Option<(Shape, f64)>,
+    /// The way of limbs that start at points, of length 1.
+    pub heading: DVec3,
+    /// What it tends to.
+    pub toward: Option<Attractor>,
+}
+
+/// A surface to cling to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cling {
+    /// The shape whose surface it is.
+    pub to: Shape,
+    /// Least and greatest distance from it.
+    pub within: [f64; 2],
+}
+
+/// A limb that is alive.
+#[derive(Clone)]
+struct Tip {
+    /// The step that it belongs to.
+    step: usize,
+    start: Start,
+    node: u32,
+    limb: u32,
+    age: u32,
+    /// The age of its next branch.
+    due: u32,
+    /// Does it leave another limb here?
+    is_branch: bool,
+}
+
+/// What a tip would best do.
+#[derive(Clone, Copy)]
+struct Choice {
+    score: f64,
+    at: DVec3,
+}
+
+/// A step while it grows.
+struct Plant<'a> {
+    step: &'a Step,
+    voxels: &'a Voxels,
+    stream: Stream,
+    skeleton: Skeleton,
+}
+
+impl Voxels {
+    /// The normal of the surface that it clings to, at `p`.
+    fn normal(&self, to: &Shape, p: DVec3) -> DVec3 {
+        let off = self.step * 1e-3;
+        DVec3::from_array(DVec3::AXES.map(|axis| to.distance(p + axis * off) - to.distance(p - axis * off)))
+            .normalize_or_zero()
+    }
+
+    /// `p`, bent to the surface that growth clings to, if there is one, by so many tries.
+    fn bent(&self, mut p: DVec3, tries: usize) -> Option<DVec3> {
+        let Some(Cling { to, within: [least, most] }) = &self.cling else { return Some(p) };
+        for _ in 0..tries {
+            let d = to.distance(p);
+            if (*least..=*most).contains(&d) {
+                return Some(p);
+            }
+            p += self.normal(to, p) * ((least + most) * 0.5 - d);
+        }
+        None
+    }
+
+    /// Where a step from `from` along `way` leads.
+    fn lead(&self, from: DVec3, way: DVec3) -> Option<DVec3> {
+        let at = self.bent(from + way * self.step, BENDS)?;
+        let length = (at - from).length() / self.step;
+        (self.cling.is_none() || (BENT[0]..=BENT[1]).contains(&length)).then_some(at)
+    }
+
+    /// The best that `tip` can do against what has grown; none where no direction is open.
+    fn choose(&self, tip: &Tip, space: &VoxelSpace, voxels: &Occupancy, near: &[Near], mut random: Stream) -> Option<Choice> {
+        let Start { at: from, way, .. } = tip.start;
+        let angles = self.branches.filter(|_| tip.is_branch).map_or(self.turn, |(_, angles)| angles);
+        let shade = voxels.side() * OFF + self.foliage;
+        let is_open = |p: DVec3| {
+            space.shape.contains(p)
+                && !space.forbid.as_ref().is_some_and(|forbid| forbid.contains(p))
+                && self.keep_from.as_ref().is_none_or(|(shape, by)| shape.distance(p) >= *by)
+        };
+        let mut best: Option<Choice> = None;
+        for _ in 0..self.tries {
+            let tried = strayed(way, angles, &mut random);
+            let Some(at) = self.lead(from, tried) else { continue };
+            if !is_open(at) || !is_open((from + at) * 0.5) {
+                continue;
+            }
+            let apart = |near: &Near| near.twig.distance(from, at);
+            if near.iter().any(|near| !near.is_kin && apart(near) < self.apart) {
+                continue;
+            }
+            let went = (at - from).normalize_or(tried);
+            let mut score = self.light.score(voxels, at, went, shade) + self.straight * went.dot(way);
+            if self.room > 0.0 {
+                // Relatives too: so branches part.
+                let reach = ROOM * self.apart;
+                let nearest = near.iter().map(apart).fold(reach, |a, b| if b < a { b } else { a });
+                score += self.room * (nearest / reach.max(f64::MIN_POSITIVE));
+            }
+            if let Some(Attractor { at: goal, strength }) = self.toward {
+                score += strength * went.dot((goal - at).normalize_or_zero());
+            }
+            if best.is_none_or(|best| score > best.score) {
+                best = Some(Choice { score, at });
+            }
+        }
+        best
+    }
+
+    /// The age of the next branch after `age`.
+    fn due(&self, age: u32, random: &mut Stream) -> u32 {
+        self.branches.map_or(u32::MAX, |([least, most], _)| age + random.random_range(least..=most))
+    }
+
+    /// How far relatives are not in each other's way, in nodes.
+    fn kin(&self) -> usize {
+        libm::ceil(self.apart / self.step * 2.0) as usize + 2
+    }
+}
+
+/// Grows `steps` together in `space`, which are all by voxels, among what `before` grew there: each one's skeleton, and the
+/// number of voxels that something is in.
+pub(super) fn grow_together(
+    steps: &[&Step],
+    space: &VoxelSpace,
+    before: &[&Skeleton],
+    seed: u64,
+    grown: &[Option<&Skeleton>],
+    progress: &Progress,
+) -> Result<(Vec<Skeleton>, u64), GrowError> {
+    let mut plants: Vec<Plant<'_>> = Vec::with_capacity(steps.len());
+    for step in steps {
+        let super::Method::Voxels(voxels) = &step.method else { continue };
+        let stream = Stream::new(seed, &format!("voxels/{}", step.name));
+        plants.push(Plant { step, voxels, stream, skeleton: Skeleton::new(step.classes.clone()) });
+    }
+    let mut voxels = space.voxels();
+    let reach = plants.iter().map(|p| p.voxels.apart * ROOM + p.voxels.step * (1.0 + 2.0 * BENT[1])).fold(0.0, f64::max);
+    let mut others = Neighbourhood::new(reach);
+    let mut known: FxHashMap<[u64; 3], u32> = FxHashMap::default();
+    for skeleton in before {
+        let mut numbers: Vec<u32> = Vec::with_capacity(skeleton.nodes.len());
+        for node in &skeleton.nodes {
+            let from = node.parent.map_or(node.position, |p| skeleton.nodes[p as usize].position);
+            voxels.insert_line(from, node.position);
+            let number = others.add(from, node.position, node.parent.map(|p| numbers[p as usize]), u32::MAX);
+            numbers.push(number);
+            known.entry(node.position.to_array().map(f64::to_bits)).or_insert(number);
+        }
+    }
+    let mut tips: Vec<Tip> = Vec::new();
+    for (index, plant) in plants.iter_mut().enumerate() {
+        tips.extend(plant.sow(index, space, &known, &mut others, grown)?);
+    }
+    let rounds = plants.iter().map(|plant| plant.voxels.rounds).max().unwrap_or(0);
+    for round in 0..rounds {
+        let choices: Vec<Option<Choice>> = tips
+            .par_iter()
+            .with_min_len(8)
+            .map_init(Vec::new, |near, tip| {
+                let Plant { voxels: own, stream, .. } = &plants[tip.step];
+                if round >= own.rounds {
+                    return None;
+                }
+                others.gather(tip.start.at, own.apart * ROOM + own.step * BENT[1], tip.node, own.kin(), near);
+                let random = stream.nth(tip.start.name).nth(u64::from(round));
+                own.choose(tip, space, &voxels, near, random)
+            })
+            .collect();
+        // The best first; of equals the one that began first.
+        let mut order: Vec<(usize, Choice)> =
+            choices.into_iter().enumerate().filter_map(|(i, choice)| Some((i, choice?))).collect();
+        order.sort_by(|(i, a), (j, b)| b.score.total_cmp(&a.score).then(i.cmp(j)));
+        let fresh = others.len();
+        let mut grown_on = vec![false; tips.len()];
+        let mut begun: Vec<(usize, Tip)> = Vec::new();
+        let mut near = Vec::new();
+        for &(i, Choice { at, .. }) in &order {
+            let plant = &mut plants[tips[i].step];
+            let own = plant.voxels;
+            grown_on[i] = plant.skeleton.nodes.len() < own.nodes as usize;
+            if !grown_on[i] {
+                continue;
+            }
+            let from = tips[i].start.at;
+            others.gather_from(fresh, from, own.apart + own.step * BENT[1], tips[i].node, own.kin(), &mut near);
+            // Another was first: it tries again next round.
+            if near.iter().any(|near| !near.is_kin && near.twig.distance(from, at) < own.apart) {
+                continue;
+            }
+            voxels.insert_line(from, at);
+            if own.foliage > 0.0 {
+                voxels.insert_ball(at, own.foliage);
+            }
+            begun.extend(plant.extend(&mut tips[i], at, round, &mut others).map(|branch| (i, branch)));
+        }
+        // Branches come after the limb that they leave: so the order of limbs is the order in which they began.
+        let mut kept = grown_on.into_iter();
+        tips.retain(|_| kept.next().unwrap_or(false));
+        begun.sort_by_key(|(i, _)| *i);
+        for (_, mut branch) in begun {
+            branch.limb = plants[branch.step].begin(branch.start.name);
+            tips.push(branch);
+        }
+        if tips.is_empty() {
+            break;
+        }
+        progress.report("grow", f64::from(round + 1) / f64::from(rounds))?;
+    }
+    Ok((plants.into_iter().map(Plant::finish).collect(), voxels.count()))
+}
+
+impl Plant<'_> {
+    /// The tips that it starts with; `known` has what grew before, by place.
+    fn sow(
+        &mut self,
+        index: usize,
+        space: &VoxelSpace,
+        known: &FxHashMap<[u64; 3], u32>,
+        others: &mut Neighbourhood,
+        grown: &[Option<&Skeleton>],
+    ) -> Result<Vec<Tip>, GrowError> {
+        let mut tips = Vec::new();
+        for mut start in self.step.starts_of_limbs(self.voxels.heading, grown)? {
+            if matches!(self.step.source, Source::At(_)) {
+                start.at = self.voxels.bent(start.at, START_BENDS).unwrap_or(start.at);
+            }
+            let is_open = space.shape.contains(start.at) && !space.forbid.as_ref().is_some_and(|f| f.contains(start.at));
+            if !is_open {
+                return Err(GrowError::Scene {
+                    place: format!("grow.{}.from", self.step.name),
+                    message: format!("the limb at {} starts outside of the space, or in what is forbidden", start.at),
+                });
+            }
+            let limb = self.begin(start.name);
+            let root = SkeletonNode { branch: limb, ..SkeletonNode::new(start.at, None, 0.0, 0) };
+            // What it grows from is no stranger.
+            let before = known.get(&start.at.to_array().map(f64::to_bits)).copied();
+            let node = self.push(root, before, others);
+            let due = self.voxels.due(0, &mut self.stream.nth(start.name).nth(u64::MAX));
+            tips.push(Tip { step: index, start, node, limb, age: 0, due, is_branch: false });
+        }
+        Ok(tips)
+    }
+
+    /// Begins a limb; its number.
+    fn begin(&mut self, name: u64) -> u32 {
+        self.skeleton.paths.push(Path { end: 0, class: 0, root: 0, name });
+        self.skeleton.paths.len() as u32 - 1
+    }
+
+    /// Adds a node that grew from the one with the number `before`; its own number among all.
+    fn push(&mut self, node: SkeletonNode, before: Option<u32>, others: &mut Neighbourhood) -> u32 {
+        let from = node.parent.map_or(node.position, |parent| self.skeleton.nodes[parent as usize].position);
+        let number = others.add(from, node.position, before, self.skeleton.nodes.len() as u32);
+        self.skeleton.nodes.push(node);
+        number
+    }
+
+    /// Lets `tip` grow to `at`; the branch that leaves it there, if one is due.
+    fn extend(&mut self, tip: &mut Tip, at: DVec3, round: u32, others: &mut Neighbourhood) -> Option<Tip> {
+        let parent = others.own(tip.node);
+        let before = self.skeleton.nodes[parent as usize];
+        let way = at - before.position;
+        let made = SkeletonNode::new(at, Some(parent), before.cost + way.length(), 0);
+        tip.node = self.push(SkeletonNode { branch: tip.limb, ..made }, Some(tip.node), others);
+        tip.start = Start { at, way: way.normalize_or(tip.start.way), ..tip.start };
+        tip.age += 1;
+        tip.is_branch = false;
+        if tip.age < tip.due {
+            return None;
+        }
+        let name = branch_name(tip.start.name, tip.age, 0);
+        tip.due = self.voxels.due(tip.age, &mut self.stream.nth(tip.start.name).nth(u64::MAX - u64::from(round)));
+        let due = self.voxels.due(0, &mut self.stream.nth(name).nth(u64::MAX));
+        Some(Tip { start: Start { name, ..tip.start }, age: 0, due, is_branch: true, ..tip.clone() })
+    }
+
+    /// What it grew: limbs that never did have no path.
+    fn finish(self) -> Skeleton {
+        let Skeleton { nodes, paths, classes } = self.skeleton;
+        let mut end = vec![None; paths.len()];
+        nodes.iter().zip(0..).for_each(|(node, i): (_, u32)| end[node.branch as usize] = Some(i));
+        let mut renamed = vec![0; paths.len()];
+        let mut kept = Vec::with_capacity(paths.len());
+        for (i, (path, end)) in paths.into_iter().zip(end).enumerate() {
+            renamed[i] = kept.len() as u32;
+            kept.extend(end.map(|end| Path { end, ..path }));
+        }
+        let nodes = nodes.into_iter().map(|n| SkeletonNode { branch: renamed[n.branch as usize], ..n }).collect();
+        Skeleton { nodes, paths: kept, classes }
+    }
+}

@@ -1,0 +1,93 @@
+//! Where limbs start that no graph carries: at points, at the ends of what grew, or all along it.
+
+use super::{GrowError, Part, Source, Step};
+use crate::math::{DVec3, mix};
+use crate::skeleton::Skeleton;
+
+/// Where a limb starts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Start {
+    /// Where it is.
+    pub at: DVec3,
+    /// The way it grows, of length 1.
+    pub way: DVec3,
+    /// The way of the last branch of the limb that it carries on; zero where it has none.
+    pub last: DVec3,
+    /// What tells it from all others, whatever else grows: its random numbers depend on it.
+    pub name: u64,
+}
+
+/// The name of a branch: of a limb's node, counted from where the limb starts, the one with this index.
+pub(super) fn branch_name(limb: u64, node: u32, index: u32) -> u64 {
+    mix(mix(limb) ^ mix(u64::from(node) << 32 | u64::from(index)))
+}
+
+impl Step {
+    /// Where limbs start that grow from points (along `heading`) or from ends.
+    pub(super) fn starts_of_limbs(
+        &self,
+        heading: DVec3,
+        grown: &[Option<&Skeleton>],
+    ) -> Result<Vec<Start>, GrowError> {
+        let wrong =
+            |message: &str| GrowError::Scene { place: format!("grow.{}.from", self.name), message: message.to_owned() };
+        match &self.source {
+            Source::At(points) => {
+                let start = |(&at, name)| Start { at, way: heading, last: DVec3::ZERO, name };
+                Ok(points.iter().zip(0..).map(start).collect())
+            }
+            Source::Steps(steps, part @ (Part::Ends | Part::EveryEnd)) => {
+                let mut starts = Vec::new();
+                for (&step, i) in steps.iter().zip(0..) {
+                    let skeleton = grown[step].ok_or_else(|| wrong("the step has not grown"))?;
+                    let last = last_branches(skeleton);
+                    starts.extend(skeleton.end_paths(*part == Part::EveryEnd).map(|path| {
+                        let end = skeleton.paths[path].end;
+                        Start {
+                            at: skeleton.nodes[end as usize].position,
+                            way: skeleton.way_into(end).unwrap_or(heading),
+                            last: last[path],
+                            name: mix(skeleton.paths[path].name ^ mix(i)),
+                        }
+                    }));
+                }
+                Ok(starts)
+            }
+            Source::Inside(_) | Source::Spread(_) | Source::Steps(_, Part::All) => {
+                Err(wrong("limbs without a graph start at points or at ends"))
+            }
+        }
+    }
+
+    /// The limbs of the steps that this one sprouts from, each as the places where it grew on, from its start: their
+    /// starts have the way of the limb there.
+    pub(super) fn limbs_before(&self, grown: &[Option<&Skeleton>]) -> Vec<Vec<Start>> {
+        let mut limbs = Vec::new();
+        for (skeleton, i) in self.sources().iter().filter_map(|&step| grown[step]).zip(0..) {
+            for (path, limb) in skeleton.paths.iter().zip(skeleton.limbs()) {
+                let name = mix(path.name ^ mix(i));
+                let on = limb.nodes.windows(2).zip(0..).map(|(pair, place)| {
+                    let [at, next] = [pair[0], pair[1]].map(|n| skeleton.nodes[n as usize].position);
+                    let way = skeleton.way_into(pair[0]).unwrap_or((next - at).normalize_or(DVec3::Z));
+                    Start { at, way, last: DVec3::ZERO, name: branch_name(name, place, 0) }
+                });
+                limbs.push(on.collect());
+            }
+        }
+        limbs
+    }
+}
+
+/// For each path the way of the last branch of its limb; zero where it has none.
+fn last_branches(skeleton: &Skeleton) -> Vec<DVec3> {
+    let mut last: Vec<(f64, DVec3)> = vec![(f64::NEG_INFINITY, DVec3::ZERO); skeleton.paths.len()];
+    let at = |node: u32| skeleton.nodes[node as usize];
+    for limb in skeleton.limbs() {
+        let (Some((from, path)), Some(&first)) = (limb.leaves, limb.nodes.first()) else { continue };
+        let slot = &mut last[path as usize];
+        if at(from).cost >= slot.0 {
+            *slot = (at(from).cost, (at(first).position - at(from).position).normalize_or_zero());
+        }
+    }
+    last.into_iter().map(|(_, way)| way).collect()
+}

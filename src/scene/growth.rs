@@ -1,0 +1,169 @@
+//! Growth by segments and by voxels: what they name is looked up, and how much will grow is told before it does.
+
+use super::resolve::Resolver;
+use crate::grow::{
+    Attractor, AttractorSpec, Branches, BranchesSpec, Cling, FromSpec, LightSense, MethodSpec, Segments, SegmentsSpec,
+    StepSpec, Voxels, VoxelsSpec,
+};
+use crate::math::{DVec3, Degrees, Point};
+
+impl Resolver<'_> {
+    /// Least and greatest, in order and in radians.
+    fn angles(&mut self, place: &str, [least, most]: [Degrees; 2]) -> [f64; 2] {
+        self.in_order(place, [least.0, most.0]);
+        [least.radians(), most.radians()]
+    }
+
+    fn in_order(&mut self, place: &str, [least, most]: [f64; 2]) {
+        if least > most {
+            self.wrong(place, format!("the least comes first: [{most}, {least}]"));
+        }
+    }
+
+    fn heading(&mut self, place: &str, heading: Option<Point>) -> DVec3 {
+        let way = heading.map_or(DVec3::Z, |p| p.0);
+        if way.try_normalize().is_none() {
+            self.wrong(place, "a heading is a direction, not the zero vector".to_owned());
+        }
+        way.normalize_or(DVec3::Z)
+    }
+
+    fn branches(&mut self, place: &str, spec: Option<BranchesSpec>) -> Option<Branches> {
+        let BranchesSpec { most, chance, angle, arc } = spec?;
+        Some(Branches { most, chance, angle: self.angles(&format!("{place}.angle"), angle), arc: arc.radians() })
+    }
+
+    /// Growth by segments of the step at `place`.
+    pub(super) fn segments(&mut self, place: &str, step: &StepSpec, spec: &SegmentsSpec) -> Option<Segments> {
+        let at = |key: &str| format!("{place}.by.segments.{key}");
+        let is_along = matches!(step.from, FromSpec::All(_));
+        if is_along && spec.sprout.is_none() {
+            let message = "how many limbs start along a step is told by `by.segments.sprout`; or grow `from.ends`";
+            self.wrong(&format!("{place}.from.all"), message.to_owned());
+        } else if !is_along && spec.sprout.is_some() {
+            self.wrong(&at("sprout"), "limbs sprout along a step: this needs `from.all`".to_owned());
+        }
+        if let FromSpec::At(points) = &step.from
+            && points.len() as f64 > 1e6
+        {
+            self.wrong(&format!("{place}.from.at"), "a million starts at most".to_owned());
+        }
+        self.free(place, step);
+        let segments = Segments {
+            step: spec.step,
+            depth: spec.depth,
+            jitter: self.angles(&at("jitter"), spec.jitter),
+            branches: self.branches(&at("branches"), spec.branches),
+            sprout: self.branches(&at("sprout"), spec.sprout),
+            heading: self.heading(&at("heading"), spec.heading),
+            inside: match &spec.inside {
+                Some(inside) => Some(self.shape(&at("inside"), inside)?),
+                None => None,
+            },
+            toward: step.toward.as_ref().map(attractor),
+            starts: self.starts(step, self.scene.grow.len()),
+        };
+        let expected = segments.check(segments.starts);
+        self.note(&format!("{place}.by.segments"), expected)?;
+        Some(segments)
+    }
+
+    /// Growth by voxels of the step at `place`.
+    pub(super) fn voxels(&mut self, place: &str, step: &StepSpec, spec: &VoxelsSpec) -> Option<Voxels> {
+        let at = |key: &str| format!("{place}.by.voxels.{key}");
+        if let FromSpec::All(_) = &step.from {
+            self.wrong(&format!("{place}.from.all"), "limbs in voxels start at points or at ends".to_owned());
+        }
+        self.free(place, step);
+        let branches = spec.branches.map(|branches| {
+            self.in_order(&at("branches.age"), branches.age.map(f64::from));
+            (branches.age, self.angles(&at("branches.angle"), branches.angle))
+        });
+        let light = LightSense::new(&spec.light);
+        if let Some(sun) = &spec.light.sun {
+            self.in_order(&at("light.sun.hours"), sun.hours);
+            if sun.directions().is_empty() {
+                self.wrong(&at("light.sun"), "the sun is below the horizon at these hours of that day".to_owned());
+            }
+        }
+        let cling = match &spec.cling {
+            Some(cling) => {
+                self.in_order(&at("cling.within"), cling.within);
+                Some(Cling { to: self.shape(&at("cling.to"), &cling.to)?, within: cling.within })
+            }
+            None => None,
+        };
+        let keep_from = match &spec.keep_from {
+            Some(keep) => Some((self.shape(&at("keep_from.shape"), &keep.shape)?, keep.by)),
+            None => None,
+        };
+        Some(Voxels {
+            step: spec.step,
+            rounds: spec.rounds,
+            nodes: spec.nodes,
+            tries: spec.tries,
+            turn: self.angles(&at("turn"), spec.turn),
+            branches,
+            apart: spec.apart.unwrap_or(spec.step * 0.5),
+            room: spec.room,
+            straight: spec.straight,
+            light,
+            foliage: spec.foliage,
+            cling,
+            keep_from,
+            heading: self.heading(&at("heading"), spec.heading),
+            toward: step.toward.as_ref().map(attractor),
+        })
+    }
+
+    /// What holds where no graph carries limbs.
+    fn free(&mut self, place: &str, step: &StepSpec) {
+        if let FromSpec::Inside(_) | FromSpec::Spread(_) = &step.from {
+            let message = "a graph has nodes in a shape or at random: without one limbs start at points (`from.at`) or ends";
+            self.wrong(&format!("{place}.from"), message.to_owned());
+        }
+        if self.is_flat() {
+            self.wrong(&format!("{place}.by"), "this grows in space, not in a flat scene".to_owned());
+        }
+    }
+
+    /// How many limbs of a step are expected to start; `most` steps are followed back.
+    fn starts(&self, step: &StepSpec, most: usize) -> f64 {
+        let grown = |name: &str| self.scene.grow.get(name).filter(|_| most > 0);
+        let ends = |name: &str| grown(name).map_or(0.0, |from| self.ends(from, most - 1));
+        match &step.from {
+            FromSpec::At(points) => points.len() as f64,
+            FromSpec::Ends(from) => ends(&from.name),
+            FromSpec::EveryEnd(all) => all.iter().map(|from| ends(&from.name)).sum(),
+            // Of a plan it is known when it has grown.
+            FromSpec::All(from) => match grown(&from.name).map(|step| (step, &step.by)) {
+                Some((from, MethodSpec::Segments(spec))) => {
+                    let starts = self.starts(from, most - 1);
+                    let expected = spec.expected(starts);
+                    starts + expected.nodes - expected.ends
+                }
+                _ => 0.0,
+            },
+            FromSpec::Inside(_) | FromSpec::Spread(_) => 0.0,
+        }
+    }
+
+    /// How many ends of a step are expected.
+    fn ends(&self, step: &StepSpec, most: usize) -> f64 {
+        match &step.by {
+            MethodSpec::Segments(spec) => spec.expected(self.starts(step, most)).ends,
+            _ => step
+                .to
+                .values()
+                .map(|set| {
+                    let at = set.at.as_ref().map_or(0, Vec::len) as f64;
+                    set.count.as_ref().and_then(crate::math::PerRound::once).unwrap_or(at)
+                })
+                .sum(),
+        }
+    }
+}
+
+fn attractor(spec: &AttractorSpec) -> Attractor {
+    Attractor { at: spec.at.0, strength: spec.strength }
+}
