@@ -37,9 +37,9 @@ pub struct Occupancy {
 const NONE: u32 = u32::MAX;
 
 /// The place of a cell within its block, or of a block within its tile.
-fn within(at: [i32; 3]) -> usize {
-    let [x, y, z] = at.map(|c| (c & ((1 << BITS) - 1)) as usize);
-    x | y << BITS | z << (2 * BITS)
+fn within([x, y, z]: [i32; 3]) -> usize {
+    let low = |c: i32| (c & ((1 << BITS) - 1)) as usize;
+    low(x) | low(y) << BITS | low(z) << (2 * BITS)
 }
 
 impl Occupancy {
@@ -81,13 +81,14 @@ impl Occupancy {
         ((p - self.low) / self.side).to_array().map(|c| libm::floor(c) as i32)
     }
 
-    fn is_within(&self, at: [i32; 3]) -> bool {
-        (0..3).all(|axis| (0..self.size[axis]).contains(&at[axis]))
+    fn is_within(&self, [x, y, z]: [i32; 3]) -> bool {
+        let [nx, ny, nz] = self.size;
+        x >= 0 && x < nx && y >= 0 && y < ny && z >= 0 && z < nz
     }
 
-    fn top(&self, at: [i32; 3]) -> usize {
-        let [x, y, z] = at.map(|c| c >> (2 * BITS));
-        (x + self.across[0] * (y + self.across[1] * z)) as usize
+    fn top(&self, [x, y, z]: [i32; 3]) -> usize {
+        let tile = |c: i32| c >> (2 * BITS);
+        (tile(x) + self.across[0] * (tile(y) + self.across[1] * tile(z))) as usize
     }
 
     /// Of the voxel `at`, which must be within: 2^n is the side of the largest empty cell of the tree around it, as n; none
@@ -97,7 +98,8 @@ impl Occupancy {
         if tile == NONE {
             return Some(2 * BITS);
         }
-        let block = self.tiles[tile as usize][within(at.map(|c| c >> BITS))];
+        let [x, y, z] = at;
+        let block = self.tiles[tile as usize][within([x >> BITS, y >> BITS, z >> BITS])];
         if block == NONE {
             return Some(BITS);
         }
@@ -199,8 +201,7 @@ impl Occupancy {
             found
         };
         let [nx, ny, nz] = self.across;
-        let tiles: Vec<[i32; 3]> =
-            (0..nx * ny * nz).map(|i| [i % nx, i / nx % ny, i / (nx * ny)]).collect();
+        let tiles: Vec<[i32; 3]> = (0..nx * ny * nz).map(|i| [i % nx, i / nx % ny, i / (nx * ny)]).collect();
         let found: Vec<Vec<([i32; 3], Block)>> = tiles.into_par_iter().map(filled).collect();
         for (at, bits) in found.into_iter().flatten() {
             let mut more = 0;
@@ -215,36 +216,43 @@ impl Occupancy {
     /// Is something on the way from `origin` along `way`, of length 1, farther than `near`?
     #[must_use]
     pub fn is_blocked(&self, origin: DVec3, way: DVec3, near: f64) -> bool {
-        let from = ((origin - self.low) / self.side).to_array();
-        let way = way.to_array();
-        let inverse = way.map(|w| if w == 0.0 { f64::INFINITY } else { 1.0 / w });
-        // Where the way crosses the borders of a box.
-        let span = |low: [f64; 3], high: [f64; 3]| {
-            let mut out = f64::INFINITY;
-            for axis in 0..3 {
-                let border = if way[axis] >= 0.0 { high[axis] } else { low[axis] };
-                let t = (border - from[axis]) * inverse[axis];
-                out = if t < out { t } else { out };
-            }
-            out
+        let from = (origin - self.low) / self.side;
+        let inverse = DVec3::new(inverse(way.x), inverse(way.y), inverse(way.z));
+        // Upwards along an axis the way leaves a cell at its far side.
+        let far = DVec3::new(side(way.x), side(way.y), side(way.z));
+        let out_of = |low: DVec3, size: DVec3| {
+            let out = (low + far * size - from) * inverse;
+            let xy = if out.x < out.y { out.x } else { out.y };
+            if out.z < xy { out.z } else { xy }
         };
-        let end = span([0.0; 3], self.size.map(f64::from));
+        let end =
+            out_of(DVec3::ZERO, DVec3::new(f64::from(self.size[0]), f64::from(self.size[1]), f64::from(self.size[2])));
         let mut t = near / self.side;
         while t < end {
-            let at: [i32; 3] =
-                std::array::from_fn(|axis| libm::floor(from[axis] + way[axis] * t) as i32);
-            if !self.is_within(at) {
-                // Rounded past the border; what starts outside is not blocked.
+            let p = from + way * t;
+            // Towards zero: only what starts outside has negative places, and those are none of the space's.
+            let at = [p.x as i32, p.y as i32, p.z as i32];
+            if p.x < 0.0 || p.y < 0.0 || p.z < 0.0 || !self.is_within(at) {
                 t += 1.0;
                 continue;
             }
             let Some(level) = self.free(at) else { return true };
-            let low = at.map(|c| f64::from(c >> level << level));
-            let out = span(low, low.map(|c| c + f64::from(1 << level)));
+            let low = |c: i32| f64::from(c >> level << level);
+            let out = out_of(DVec3::new(low(at[0]), low(at[1]), low(at[2])), DVec3::splat(f64::from(1 << level)));
             t = if out > t { out } else { t } + STEP;
         }
         false
     }
+}
+
+/// One over a part of a direction; where that is 0 no border is ever met.
+fn inverse(way: f64) -> f64 {
+    if way == 0.0 { f64::INFINITY } else { 1.0 / way }
+}
+
+/// Which side of a cell a direction leaves by: 1 the far one, 0 the near one.
+fn side(way: f64) -> f64 {
+    if way >= 0.0 { 1.0 } else { 0.0 }
 }
 
 /// The first voxel of the cell with this place in a cell of the tree that starts at `first`; its own cells have 2^`level` voxels.

@@ -126,7 +126,14 @@ impl Voxels {
     }
 
     /// The best that `tip` can do against what has grown; none where no direction is open.
-    fn choose(&self, tip: &Tip, space: &VoxelSpace, voxels: &Occupancy, near: &[Near], mut random: Stream) -> Option<Choice> {
+    fn choose(
+        &self,
+        tip: &Tip,
+        space: &VoxelSpace,
+        voxels: &Occupancy,
+        near: &[Near],
+        mut random: Stream,
+    ) -> Option<Choice> {
         let Start { at: from, way, .. } = tip.start;
         let angles = self.branches.filter(|_| tip.is_branch).map_or(self.turn, |(_, angles)| angles);
         let shade = voxels.side() * OFF + self.foliage;
@@ -135,7 +142,8 @@ impl Voxels {
                 && !space.forbid.as_ref().is_some_and(|forbid| forbid.contains(p))
                 && self.keep_from.as_ref().is_none_or(|(shape, by)| shape.distance(p) >= *by)
         };
-        let mut best: Option<Choice> = None;
+        // What each counts without the light, and with all of it.
+        let mut open: Vec<(f64, f64, DVec3, DVec3)> = Vec::with_capacity(self.tries as usize);
         for _ in 0..self.tries {
             let tried = strayed(way, angles, &mut random);
             let Some(at) = self.lead(from, tried) else { continue };
@@ -147,7 +155,7 @@ impl Voxels {
                 continue;
             }
             let went = (at - from).normalize_or(tried);
-            let mut score = self.light.score(voxels, at, went, shade) + self.straight * went.dot(way);
+            let mut score = self.straight * went.dot(way);
             if self.room > 0.0 {
                 // Relatives too: so branches part.
                 let reach = ROOM * self.apart;
@@ -157,6 +165,16 @@ impl Voxels {
             if let Some(Attractor { at: goal, strength }) = self.toward {
                 score += strength * went.dot((goal - at).normalize_or_zero());
             }
+            open.push((score + self.light.most(went), score, at, went));
+        }
+        // Rays are dear: none are cast for what could not be the best even in full light.
+        open.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut best: Option<Choice> = None;
+        for (most, rest, at, went) in open {
+            if best.is_some_and(|best| most <= best.score) {
+                break;
+            }
+            let score = rest + self.light.score(voxels, at, went, shade);
             if best.is_none_or(|best| score > best.score) {
                 best = Some(Choice { score, at });
             }
@@ -192,7 +210,8 @@ pub(super) fn grow_together(
         plants.push(Plant { step, voxels, stream, skeleton: Skeleton::new(step.classes.clone()) });
     }
     let mut voxels = space.voxels();
-    let reach = plants.iter().map(|p| p.voxels.apart * ROOM + p.voxels.step * (1.0 + 2.0 * BENT[1])).fold(0.0, f64::max);
+    let reach =
+        plants.iter().map(|p| p.voxels.apart * ROOM + p.voxels.step * (1.0 + 2.0 * BENT[1])).fold(0.0, f64::max);
     let mut others = Neighbourhood::new(reach);
     let mut known: FxHashMap<[u64; 3], u32> = FxHashMap::default();
     for skeleton in before {
@@ -256,7 +275,9 @@ pub(super) fn grow_together(
         tips.retain(|_| kept.next().unwrap_or(false));
         begun.sort_by_key(|(i, _)| *i);
         for (_, mut branch) in begun {
-            branch.limb = plants[branch.step].begin(branch.start.name);
+            let plant = &mut plants[branch.step];
+            let root = plant.skeleton.paths[branch.limb as usize].root;
+            branch.limb = plant.begin(branch.start.name, root);
             tips.push(branch);
         }
         if tips.is_empty() {
@@ -282,14 +303,15 @@ impl Plant<'_> {
             if matches!(self.step.source, Source::At(_)) {
                 start.at = self.voxels.bent(start.at, START_BENDS).unwrap_or(start.at);
             }
-            let is_open = space.shape.contains(start.at) && !space.forbid.as_ref().is_some_and(|f| f.contains(start.at));
+            let is_open =
+                space.shape.contains(start.at) && !space.forbid.as_ref().is_some_and(|f| f.contains(start.at));
             if !is_open {
                 return Err(GrowError::Scene {
                     place: format!("grow.{}.from", self.step.name),
                     message: format!("the limb at {} starts outside of the space, or in what is forbidden", start.at),
                 });
             }
-            let limb = self.begin(start.name);
+            let limb = self.begin(start.name, self.skeleton.nodes.len() as u32);
             let root = SkeletonNode { branch: limb, ..SkeletonNode::new(start.at, None, 0.0, 0) };
             // What it grows from is no stranger.
             let before = known.get(&start.at.to_array().map(f64::to_bits)).copied();
@@ -300,9 +322,9 @@ impl Plant<'_> {
         Ok(tips)
     }
 
-    /// Begins a limb; its number.
-    fn begin(&mut self, name: u64) -> u32 {
-        self.skeleton.paths.push(Path { end: 0, class: 0, root: 0, name });
+    /// Begins a limb of the tree with this root; its number.
+    fn begin(&mut self, name: u64, root: u32) -> u32 {
+        self.skeleton.paths.push(Path { end: root, class: 0, root, name });
         self.skeleton.paths.len() as u32 - 1
     }
 

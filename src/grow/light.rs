@@ -55,11 +55,20 @@ impl LightSense {
 
     /// What a limb gets that grows to `at` along `way`; what is nearer than `near` takes no light.
     pub(super) fn score(&self, voxels: &Occupancy, at: DVec3, way: DVec3, near: f64) -> f64 {
+        self.sum(way, |ray| !voxels.is_blocked(at, ray, near))
+    }
+
+    /// What it would get if nothing took any.
+    pub(super) fn most(&self, way: DVec3) -> f64 {
+        self.sum(way, |_| true)
+    }
+
+    fn sum(&self, way: DVec3, is_free: impl Fn(DVec3) -> bool) -> f64 {
         let mut score = 0.0;
         for (rays, counts) in [&self.sky, &self.sun] {
             let mut seen = 0.0;
             for &ray in rays {
-                if !voxels.is_blocked(at, ray, near) {
+                if is_free(ray) {
                     seen += (1.0 + way.dot(ray)) * 0.5;
                 }
             }
@@ -84,7 +93,9 @@ mod tests {
     #[test]
     fn the_sun_stands_where_almanacs_have_it() {
         let height = |way: DVec3| libm::asin(way.z) * 180.0 / std::f64::consts::PI;
-        for (latitude, day, expected) in [(51.5, 172.0, 61.9), (51.5, 355.0, 15.1), (51.5, 80.5, 38.5), (-33.9, 355.0, 79.5)] {
+        for (latitude, day, expected) in
+            [(51.5, 172.0, 61.9), (51.5, 355.0, 15.1), (51.5, 80.5, 38.5), (-33.9, 355.0, 79.5)]
+        {
             let noon = sun(latitude, day, 12.0)[0];
             assert!((height(noon) - expected).abs() < 0.6, "{latitude} {day}: {}", height(noon));
             assert!(noon.x.abs() < 1e-9 && (noon.y < 0.0) == (latitude > 0.0));
@@ -92,9 +103,8 @@ mod tests {
         let evening = sun(40.0, 172.0, 18.0)[0];
         assert!(evening.x < -0.8 && evening.y > 0.0, "in summer it sets north of west: {evening}");
         assert!(sun(51.5, 355.0, 6.0).is_empty() && sun(51.5, 172.0, 6.0)[0].x > 0.0);
-        let turned = SunSpec {
-            counts: 1.0, latitude: Degrees(51.5), day: 172.0, hours: [6.0, 18.0], north: Degrees(90.0),
-        };
+        let turned =
+            SunSpec { counts: 1.0, latitude: Degrees(51.5), day: 172.0, hours: [6.0, 18.0], north: Degrees(90.0) };
         let all = turned.directions();
         assert_eq!(all.len(), 13);
         // North is at -x, so south at x.

@@ -1,5 +1,7 @@
 //! Amin's Growth module: nodes of a queue grow on their own, so that any number of threads gives the same plant.
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use rand::RngExt;
 use rayon::prelude::*;
 
@@ -82,20 +84,77 @@ impl Expected {
 }
 
 /// An entry of the queue: a node that is to grow.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct Tip {
     start: Start,
     node: u32,
     limb: u32,
+    root: u32,
 }
 
-/// What a few tips grew. Limbs and nodes of their own count from where theirs start.
+/// A node that grew.
+#[derive(Clone, Copy)]
+struct Made {
+    at: DVec3,
+    /// The node before it; none at a root.
+    parent: Option<u32>,
+    /// Its limb, or [`NEW`] and the place among those that begin in its growth.
+    limb: u32,
+}
+
+/// What the next time needs of a node.
+#[derive(Clone, Copy)]
+struct Bud {
+    way: DVec3,
+    last: DVec3,
+    name: u64,
+    root: u32,
+}
+
+/// Limbs from this number on are new.
+const NEW: u32 = 1 << 31;
+
+/// What a few tips grew at one time.
 #[derive(Default)]
 struct Growth {
-    nodes: Vec<SkeletonNode>,
-    tips: Vec<Tip>,
-    /// The limbs that begin, by name.
-    limbs: Vec<u64>,
+    /// How often they had grown.
+    age: u32,
+    /// The numbers of its first node and of the first limb that begins in it.
+    first: u32,
+    limb: u32,
+    made: Vec<Made>,
+    /// A bud for each node, but for the last time.
+    buds: Vec<Bud>,
+    /// The limbs that begin.
+    limbs: Vec<Path>,
+}
+
+impl Growth {
+    fn new(age: u32, tips: usize) -> Self {
+        Self { age, made: Vec::with_capacity(2 * tips), buds: Vec::with_capacity(2 * tips), ..Self::default() }
+    }
+
+    fn named(&self, limb: u32) -> u32 {
+        if limb >= NEW { limb - NEW + self.limb } else { limb }
+    }
+
+    /// The entry of its node with this place.
+    fn tip(&self, place: usize) -> Tip {
+        let (Made { at, limb, .. }, Bud { way, last, name, root }) = (self.made[place], self.buds[place]);
+        Tip { start: Start { at, way, last, name }, node: self.first + place as u32, limb: self.named(limb), root }
+    }
+
+    /// Adds a node with its bud, of a limb or of a new one.
+    fn add(&mut self, made: Made, bud: Bud) {
+        let limb = if made.limb == NEW {
+            self.limbs.push(Path { end: 0, class: 0, root: bud.root, name: bud.name });
+            NEW + self.limbs.len() as u32 - 1
+        } else {
+            made.limb
+        };
+        self.made.push(Made { limb, ..made });
+        self.buds.push(bud);
+    }
 }
 
 /// A direction at `angle` from `way`, and `turn` about it.
@@ -171,98 +230,146 @@ impl Segments {
         self.inside.as_ref().is_none_or(|inside| inside.contains(p))
     }
 
-    /// Lets `tip` grow for the time `age`.
-    fn grow_tip(&self, tip: &Tip, age: u32, stream: &Stream, growth: &mut Growth) {
+    /// Lets `tip` grow.
+    fn grow_tip(&self, tip: &Tip, stream: &Stream, growth: &mut Growth) {
         let Start { at, way, last, name } = tip.start;
-        let mut random = stream.nth(name).nth(u64::from(age));
+        let mut random = stream.nth(name).nth(u64::from(growth.age));
         let stem = self.attracted(at, strayed(way, self.jitter, &mut random));
-        if !self.is_open(at + stem * self.step) {
+        let end = at + stem * self.step;
+        if !self.is_open(end) {
             return;
         }
-        let first = growth.tips.len();
-        self.add(tip, Start { at, way: stem, last, name }, Some(tip.limb), age, growth);
-        let Some(branches) = &self.branches else { return };
-        let last = self.branch(branches, tip, age, 0, &mut random, growth);
-        growth.tips[first].start.last = last;
+        let place = growth.buds.len();
+        let made = Made { at: end, parent: Some(tip.node), limb: tip.limb };
+        growth.add(made, Bud { way: stem, last, name, root: tip.root });
+        if let Some(branches) = &self.branches {
+            growth.buds[place].last = self.branch(branches, tip, NEW, &mut random, growth);
+        }
     }
 
-    /// Lets branches grow from `tip`, the first of them with the index `from`; the way of the last.
-    fn branch(
-        &self,
-        branches: &Branches,
-        tip: &Tip,
-        age: u32,
-        from: u32,
-        random: &mut Stream,
-        growth: &mut Growth,
-    ) -> DVec3 {
+    /// Lets branches grow from `tip`, the first of them of `limb`; the way of the last.
+    fn branch(&self, branches: &Branches, tip: &Tip, mut limb: u32, random: &mut Stream, growth: &mut Growth) -> DVec3 {
         let Start { at, way, mut last, name } = tip.start;
-        for index in from..from + branches.count(random) {
+        for index in 0..branches.count(random) {
             let branch = self.attracted(at, branches.way(way, last, random));
-            if self.is_open(at + branch * self.step) {
-                last = branch;
-                let start = Start { at, way: branch, last: DVec3::ZERO, name: branch_name(name, age, index) };
-                self.add(tip, start, None, age, growth);
+            // What the box cuts off changes nothing else.
+            last = branch;
+            let end = at + branch * self.step;
+            if self.is_open(end) {
+                let name = if limb == NEW { branch_name(name, growth.age, index) } else { name };
+                let bud = Bud { way: branch, last: DVec3::ZERO, name, root: tip.root };
+                growth.add(Made { at: end, parent: Some(tip.node), limb }, bud);
+                limb = NEW;
             }
         }
         last
     }
 
-    /// Adds the node a step along the way of `start`, of a limb or of a new one.
-    fn add(&self, tip: &Tip, start: Start, limb: Option<u32>, age: u32, growth: &mut Growth) {
-        let at = start.at + start.way * self.step;
-        let cost = f64::from(age + 1) * self.step;
-        // New limbs have their place among those of this growth until all are known.
-        let limb = limb.unwrap_or_else(|| {
-            growth.limbs.push(start.name);
-            NEW + growth.limbs.len() as u32 - 1
-        });
-        let node = growth.nodes.len() as u32;
-        growth.nodes.push(SkeletonNode { branch: limb, ..SkeletonNode::new(at, Some(tip.node), cost, 0) });
-        growth.tips.push(Tip { start: Start { at, ..start }, node, limb });
+    /// What sprouts along one limb, each place with its root; sprouts avoid each other as branches do.
+    fn sprouts(&self, sprout: &Branches, limb: Vec<Start>, stream: &Stream) -> Vec<(Start, Growth)> {
+        let mut last = DVec3::ZERO;
+        let mut all = Vec::new();
+        for start in limb {
+            let tip = Tip { start: Start { last, ..start }, node: 0, limb: 0, root: 0 };
+            let mut growth = Growth::default();
+            last = self.branch(sprout, &tip, tip.limb, &mut stream.nth(start.name).nth(0), &mut growth);
+            if !growth.made.is_empty() {
+                all.push((start, growth));
+            }
+        }
+        all
     }
 }
 
-/// Limbs from this number on are new, counted within their growth.
-const NEW: u32 = 1 << 31;
-
-/// A plant while it grows.
+/// A plant while it grows: what grew, in order, and from which growth on it is to grow.
+#[derive(Default)]
 struct Growing {
-    skeleton: Skeleton,
-    tips: Vec<Tip>,
+    growths: Vec<Growth>,
+    alive: usize,
+    nodes: usize,
+    limbs: u32,
 }
 
 impl Growing {
-    /// Adds what chunks of tips grew, in order.
-    fn join(&mut self, growths: Vec<Growth>) {
-        let nodes = &mut self.skeleton.nodes;
-        let (first, limb) = (nodes.len(), self.skeleton.paths.len() as u32);
-        let total: usize = growths.iter().map(|growth| growth.nodes.len()).sum();
-        nodes.resize(first + total, SkeletonNode::new(DVec3::ZERO, None, 0.0, 0));
-        self.tips.clear();
-        self.tips.resize(total, Tip::default());
-        let mut slots = Vec::with_capacity(growths.len());
-        let (mut nodes, mut tips) = (&mut nodes[first..], &mut self.tips[..]);
-        let (mut at, mut begun) = (first as u32, limb);
-        for growth in &growths {
-            let (own_nodes, other_nodes) = nodes.split_at_mut(growth.nodes.len());
-            let (own_tips, other_tips) = tips.split_at_mut(growth.tips.len());
-            slots.push((growth, own_nodes, own_tips, at, begun));
-            at += growth.nodes.len() as u32;
-            begun += growth.limbs.len() as u32;
-            (nodes, tips) = (other_nodes, other_tips);
+    /// Adds what grew at one time.
+    fn join(&mut self, mut growths: Vec<Growth>) {
+        self.alive = self.growths.len();
+        growths.retain(|growth| !growth.made.is_empty());
+        for growth in &mut growths {
+            (growth.first, growth.limb) = (self.nodes as u32, self.limbs);
+            self.nodes += growth.made.len();
+            self.limbs += growth.limbs.len() as u32;
         }
-        slots.into_par_iter().for_each(|(growth, nodes, tips, at, begun)| {
-            let named = |limb: u32| if limb >= NEW { limb - NEW + begun } else { limb };
-            for (slot, node) in nodes.iter_mut().zip(&growth.nodes) {
-                *slot = SkeletonNode { branch: named(node.branch), ..*node };
+        self.growths.extend(growths);
+    }
+
+    /// Roots, each with a limb of its own.
+    fn plant(&mut self, starts: &[Start]) {
+        let mut roots = Growth::new(0, starts.len());
+        for (&Start { at, way, last, name }, root) in starts.iter().zip(0..) {
+            roots.add(Made { at, parent: None, limb: NEW }, Bud { way, last, name, root });
+        }
+        self.join(vec![roots]);
+    }
+
+    /// Lets all that is alive grow once more; `is_last` where nothing grows after.
+    fn grow(&mut self, segments: &Segments, age: u32, is_last: bool, stream: &Stream) {
+        let alive = &self.growths[self.alive..];
+        let pieces: Vec<(&Growth, std::ops::Range<usize>)> = alive
+            .iter()
+            .flat_map(|growth| {
+                let count = growth.buds.len();
+                (0..count).step_by(CHUNK).map(move |low| (growth, low..count.min(low + CHUNK)))
+            })
+            .collect();
+        let growths = pieces
+            .into_par_iter()
+            .map(|(from, places)| {
+                let mut growth = Growth::new(age, places.len());
+                places.for_each(|place| segments.grow_tip(&from.tip(place), stream, &mut growth));
+                if is_last {
+                    growth.buds = Vec::new();
+                }
+                growth
+            })
+            .collect();
+        self.growths[self.alive..].par_iter_mut().for_each(|growth| growth.buds = Vec::new());
+        self.join(growths);
+    }
+
+    /// All that grew; a step is so long.
+    fn finish(self, classes: Vec<String>, step: f64) -> Skeleton {
+        // The growth that every so many nodes belong to: from there it is not far to any other.
+        const EVERY: usize = 64;
+        let mut at = 0;
+        let near: Vec<usize> = (0..self.nodes)
+            .step_by(EVERY)
+            .map(|node| {
+                while self.growths[at].first as usize + self.growths[at].made.len() <= node {
+                    at += 1;
+                }
+                at
+            })
+            .collect();
+        let node = |i: usize| {
+            let mut growth = near[i / EVERY];
+            while self.growths[growth].first as usize + self.growths[growth].made.len() <= i {
+                growth += 1;
             }
-            for (slot, tip) in tips.iter_mut().zip(&growth.tips) {
-                *slot = Tip { node: tip.node + at, limb: named(tip.limb), ..*tip };
-            }
+            let growth = &self.growths[growth];
+            let Made { at, parent, limb } = growth.made[i - growth.first as usize];
+            let cost = if parent.is_some() { f64::from(growth.age + 1) * step } else { 0.0 };
+            SkeletonNode { branch: growth.named(limb), ..SkeletonNode::new(at, parent, cost, 0) }
+        };
+        let nodes: Vec<SkeletonNode> = (0..self.nodes).into_par_iter().with_min_len(CHUNK).map(node).collect();
+        // The last node of each limb is its end.
+        let ends: Vec<AtomicU32> = (0..self.limbs).into_par_iter().map(|_| AtomicU32::new(0)).collect();
+        nodes.par_iter().zip(0..nodes.len() as u32).for_each(|(node, i)| {
+            ends[node.branch as usize].fetch_max(i, Ordering::Relaxed);
         });
-        let names = growths.iter().flat_map(|growth| &growth.limbs);
-        self.skeleton.paths.extend(names.map(|&name| Path { end: 0, class: 0, root: 0, name }));
+        let limbs = self.growths.iter().flat_map(|growth| &growth.limbs);
+        let paths = limbs.zip(ends).map(|(limb, end)| Path { end: end.into_inner(), ..*limb }).collect();
+        Skeleton { nodes, paths, classes }
     }
 }
 
@@ -275,94 +382,49 @@ impl Step {
         grown: &[Option<&Skeleton>],
         progress: &Progress,
     ) -> Result<Skeleton, GrowError> {
-        let wrong = |key: &str, message: String| GrowError::Scene { place: format!("grow.{}.{key}", self.name), message };
+        let wrong =
+            |key: &str, message: String| GrowError::Scene { place: format!("grow.{}.{key}", self.name), message };
         let stream = Stream::new(seed, &format!("segments/{}", self.name));
-        let mut plant = Growing { skeleton: Skeleton::new(self.classes.clone()), tips: Vec::new() };
-        let root = |start: Start, plant: &mut Growing| {
-            let number = plant.skeleton.nodes.len() as u32;
-            plant.skeleton.nodes.push(SkeletonNode { branch: number, ..SkeletonNode::new(start.at, None, 0.0, 0) });
-            plant.skeleton.paths.push(Path { end: number, class: 0, root: number, name: start.name });
-            Tip { start, node: number, limb: number }
-        };
-        let mut age = 0;
+        let mut plant = Growing::default();
+        let mut begin = 0;
         if let Some(sprout) = &segments.sprout {
             let limbs = self.limbs_before(grown);
             let places: usize = limbs.iter().map(Vec::len).sum();
             segments.check(places as f64).map_err(|message| wrong("by.segments", message))?;
             let sprouted: Vec<Vec<(Start, Growth)>> =
                 limbs.into_par_iter().map(|limb| segments.sprouts(sprout, limb, &stream)).collect();
-            let sprouted: Vec<(Start, Growth)> = sprouted.into_iter().flatten().collect();
-            let mut growths = Vec::with_capacity(sprouted.len());
-            for (start, mut growth) in sprouted {
-                let tip = root(start, &mut plant);
-                for (node, tip_of) in growth.nodes.iter_mut().zip(&mut growth.tips) {
-                    node.parent = Some(tip.node);
-                    // The first carries on the limb of the root.
-                    let limb = |limb: u32| if limb == NEW { tip.limb } else { limb - 1 };
-                    (node.branch, tip_of.limb) = (limb(node.branch), limb(tip_of.limb));
-                }
-                plant.skeleton.paths[tip.limb as usize].name = growth.limbs.remove(0);
-                growths.push(growth);
+            let (starts, mut growths): (Vec<Start>, Vec<Growth>) = sprouted.into_iter().flatten().unzip();
+            plant.plant(&starts);
+            for (growth, root) in growths.iter_mut().zip(0..) {
+                growth.made.iter_mut().for_each(|made| made.parent = Some(root));
+                growth.buds.iter_mut().for_each(|bud| bud.root = root);
+                growth.limbs.iter_mut().for_each(|limb| limb.root = root);
+                // The first carries on the limb of its root.
+                growth.made[0].limb = root;
             }
             plant.join(growths);
-            age = 1;
+            begin = 1;
         } else {
             let starts = self.starts_of_limbs(segments.heading, grown)?;
             segments.check(starts.len() as f64).map_err(|message| wrong("by.segments", message))?;
-            for start in starts {
-                if !segments.is_open(start.at) && matches!(self.source, Source::At(_)) {
-                    return Err(wrong("from.at", format!("the limb at {} starts outside of `inside`", start.at)));
-                }
-                let tip = root(start, &mut plant);
-                plant.tips.push(tip);
+            if let Some(start) = starts.iter().find(|start| !segments.is_open(start.at))
+                && matches!(self.source, Source::At(_))
+            {
+                return Err(wrong("from.at", format!("the limb at {} starts outside of `inside`", start.at)));
             }
+            plant.plant(&starts);
         }
-        for age in age..segments.depth {
-            let growths: Vec<Growth> = plant
-                .tips
-                .par_chunks(CHUNK)
-                .map(|tips| {
-                    let mut growth = Growth::default();
-                    tips.iter().for_each(|tip| segments.grow_tip(tip, age, &stream, &mut growth));
-                    growth
-                })
-                .collect();
-            plant.join(growths);
-            if plant.skeleton.nodes.len() as u64 > MOST_NODES {
+        for age in begin..segments.depth {
+            plant.grow(segments, age, age + 1 == segments.depth, &stream);
+            if plant.nodes as u64 > MOST_NODES {
                 let message = format!("more than {MOST_NODES} nodes grow: lower `depth`, `most` or `chance`");
                 return Err(wrong("by.segments", message));
             }
-            if plant.tips.is_empty() {
+            if plant.alive == plant.growths.len() {
                 break;
             }
             progress.report("grow", f64::from(age + 1) / f64::from(segments.depth))?;
         }
-        let mut skeleton = plant.skeleton;
-        let Skeleton { nodes, paths, .. } = &mut skeleton;
-        // The last node of each limb is its end; a limb that branches off has the root of what it leaves.
-        for (node, i) in nodes.iter().zip(0_u32..) {
-            let path = &mut paths[node.branch as usize];
-            path.end = i;
-        }
-        Ok(skeleton)
-    }
-}
-
-impl Segments {
-    /// The sprouts along one limb, at each place where there are any; they avoid each other as branches do.
-    fn sprouts(&self, sprout: &Branches, limb: Vec<Start>, stream: &Stream) -> Vec<(Start, Growth)> {
-        let mut last = DVec3::ZERO;
-        let mut all = Vec::new();
-        for start in limb {
-            let start = Start { last, ..start };
-            let mut random = stream.nth(start.name).nth(0);
-            let mut growth = Growth::default();
-            let tip = Tip { start, node: 0, limb: 0 };
-            last = self.branch(sprout, &tip, 0, 0, &mut random, &mut growth);
-            if !growth.nodes.is_empty() {
-                all.push((start, growth));
-            }
-        }
-        all
+        Ok(plant.finish(self.classes.clone(), segments.step))
     }
 }

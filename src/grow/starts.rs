@@ -24,11 +24,7 @@ pub(super) fn branch_name(limb: u64, node: u32, index: u32) -> u64 {
 
 impl Step {
     /// Where limbs start that grow from points (along `heading`) or from ends.
-    pub(super) fn starts_of_limbs(
-        &self,
-        heading: DVec3,
-        grown: &[Option<&Skeleton>],
-    ) -> Result<Vec<Start>, GrowError> {
+    pub(super) fn starts_of_limbs(&self, heading: DVec3, grown: &[Option<&Skeleton>]) -> Result<Vec<Start>, GrowError> {
         let wrong =
             |message: &str| GrowError::Scene { place: format!("grow.{}.from", self.name), message: message.to_owned() };
         match &self.source {

@@ -517,11 +517,17 @@ impl Step {
 
     /// Radii, smoothing, ages and branches.
     pub(super) fn finish(&self, mut skeleton: Skeleton, grown: &[Option<&Skeleton>]) -> Result<Skeleton, GrowError> {
+        // Growth without a graph knows its roots and limbs.
+        let is_free = matches!(self.method, Method::Segments(_) | Method::Voxels(_));
         if self.repeat.is_none() {
-            skeleton.root_paths();
+            if !is_free {
+                skeleton.root_paths();
+            }
             let level = self.first_level(grown);
             // Fractal placement counts its iterations.
-            skeleton.nodes.iter_mut().for_each(|node| node.level += level);
+            if level > 0 {
+                skeleton.nodes.iter_mut().for_each(|node| node.level += level);
+            }
         }
         if matches!(self.method, Method::Regions(_)) {
             return Ok(skeleton);
@@ -546,11 +552,14 @@ impl Step {
             smooth(&mut skeleton, self.smooth);
             skeleton = bend(&skeleton);
         }
-        self.age(&mut skeleton, grown);
+        let has_limbs = is_free && self.strands.is_none() && self.smooth <= 0.0;
+        self.age(&mut skeleton, has_limbs, grown);
         if let Some(symmetry) = &self.symmetry {
             skeleton = skeleton.symmetric(symmetry);
         }
-        skeleton.number_branches();
+        if !has_limbs || self.symmetry.is_some() {
+            skeleton.number_branches();
+        }
         Ok(skeleton)
     }
 
@@ -560,8 +569,12 @@ impl Step {
         if self.width.starts_plant().is_some() { levels.max().unwrap_or(0) } else { 0 }
     }
 
-    /// Carries on ages and largest radii from the steps that this one grows from.
-    pub(super) fn age(&self, skeleton: &mut Skeleton, grown: &[Option<&Skeleton>]) {
+    /// Carries on ages and largest radii from the steps that this one grows from; `has_limbs` where each node has the index of a
+    /// path as its limb.
+    fn age(&self, skeleton: &mut Skeleton, has_limbs: bool, grown: &[Option<&Skeleton>]) {
+        if has_limbs && self.sources().is_empty() {
+            return;
+        }
         let known: HashMap<[u64; 3], &SkeletonNode> = self
             .sources()
             .iter()
@@ -569,11 +582,16 @@ impl Step {
             .flat_map(|s| &s.nodes)
             .map(|node| (bits(node.position), node))
             .collect();
-        skeleton.start_from(|root| {
+        let start = |root: &SkeletonNode| {
             // Widths along whole plants come later.
             let widest = |radius: f64| if radius > 0.0 { radius } else { f64::INFINITY };
             known.get(&bits(root.position)).map_or((0.0, f64::INFINITY), |node| (node.age, widest(node.radius)))
-        });
+        };
+        if has_limbs {
+            skeleton.start_limbs_from(start);
+        } else {
+            skeleton.start_from(start);
+        }
     }
 }
 

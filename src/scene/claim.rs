@@ -151,7 +151,8 @@ impl Quantity {
     fn of(self, grown: &Grown, with: Option<&Skeleton>, shape: Option<&Shape>) -> f64 {
         let skeleton = &grown.skeleton;
         let m = measure_from(skeleton, grown.foot);
-        let distances = |shape: &Shape| -> Vec<f64> { skeleton.nodes.iter().map(|n| shape.distance(n.position)).collect() };
+        let distances =
+            |shape: &Shape| -> Vec<f64> { skeleton.nodes.iter().map(|n| shape.distance(n.position)).collect() };
         let least = |d: Vec<f64>| d.into_iter().fold(f64::INFINITY, f64::min);
         match self {
             Self::Directions => m.directions as f64,
@@ -207,7 +208,9 @@ impl Quantity {
                 (Some(shape), _) => least(distances(shape)),
                 (None, with) => with.map_or(f64::NAN, |with| nearest(skeleton, with)),
             },
-            Self::Farthest => shape.map_or(f64::NAN, |shape| -least(distances(shape).into_iter().map(|d| -d).collect())),
+            Self::Farthest => {
+                shape.map_or(f64::NAN, |shape| -least(distances(shape).into_iter().map(|d| -d).collect()))
+            }
             Self::Inside => shape.map_or(f64::NAN, |shape| {
                 let count = distances(shape).into_iter().filter(|&d| d <= 0.0).count();
                 count as f64 / skeleton.nodes.len().max(1) as f64

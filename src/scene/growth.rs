@@ -119,7 +119,8 @@ impl Resolver<'_> {
     /// What holds where no graph carries limbs.
     fn free(&mut self, place: &str, step: &StepSpec) {
         if let FromSpec::Inside(_) | FromSpec::Spread(_) = &step.from {
-            let message = "a graph has nodes in a shape or at random: without one limbs start at points (`from.at`) or ends";
+            let message =
+                "a graph has nodes in a shape or at random: without one limbs start at points (`from.at`) or ends";
             self.wrong(&format!("{place}.from"), message.to_owned());
         }
         if self.is_flat() {

@@ -9,8 +9,9 @@ use crate::files::{decode_grey, decode_sketch};
 use crate::geom::{Bounds, Shape, Strokes};
 use crate::graph::{CostField, FieldSpec, FieldUse, HeightEnd, Joining, Measure, MeasureSpec, Sectors, Weights};
 use crate::grow::{
-    Clusters, EndpointSpec, Endpoints, FromSpec, LatticeSpace, LatticeSpec, MethodSpec, Near, NearSpec, NodesSpec, Part, Placement,
-    ScatterSpace, ScatterSpec, Source as Generators, Space, SpaceSpec, Step, StepSpec, VoxelNodesSpec, VoxelSpace,
+    Clusters, EndpointSpec, Endpoints, FromSpec, LatticeSpace, LatticeSpec, MethodSpec, Near, NearSpec, NodesSpec,
+    Part, Placement, ScatterSpace, ScatterSpec, Source as Generators, Space, SpaceSpec, Step, StepSpec, VoxelNodesSpec,
+    VoxelSpace,
 };
 use crate::math::{DVec2, DVec3, PerRound, Point};
 use crate::skeleton::Width;
@@ -64,7 +65,10 @@ impl Resolver<'_> {
                     ("stream", spec.stream.is_some()),
                 ];
                 for (key, _) in given.iter().filter(|(_, is_given)| *is_given) {
-                    self.wrong(&format!("{place}.{key}"), format!("voxels have no `{key}`: nothing is planned in them"));
+                    self.wrong(
+                        &format!("{place}.{key}"),
+                        format!("voxels have no `{key}`: nothing is planned in them"),
+                    );
                 }
                 let space = VoxelSpace { shape, forbid, side };
                 self.note(&format!("{place}.nodes.voxels"), space.check())?;

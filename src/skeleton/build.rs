@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 use std::hash::{BuildHasher, Hash};
 
+use rayon::prelude::*;
+
 use crate::math::DVec3;
 
 /// One node of a skeleton.
@@ -114,6 +116,17 @@ impl Skeleton {
         }
     }
 
+    /// The same where the limb of each node is the index of a path that has a root.
+    pub fn start_limbs_from(&mut self, start: impl Fn(&SkeletonNode) -> (f64, f64) + Sync) {
+        let nodes = &self.nodes;
+        let starts: Vec<(f64, f64)> = self.paths.par_iter().map(|path| start(&nodes[path.root as usize])).collect();
+        self.nodes.par_iter_mut().for_each(|node| {
+            let (age, radius) = starts[node.branch as usize];
+            node.age = age + node.cost;
+            node.radius = node.radius.min(radius);
+        });
+    }
+
     /// What had grown at this age: younger nodes are left out, and the last segment of each limb is as long as it was.
     #[must_use]
     pub fn until(&self, age: f64) -> Self {
@@ -176,8 +189,7 @@ impl Skeleton {
         if !every {
             self.paths.iter().filter(|path| path.root != path.end).for_each(|path| is_kept[path.root as usize] = false);
         }
-        (0..self.paths.len())
-            .filter(move |&path| std::mem::replace(&mut is_kept[self.paths[path].end as usize], false))
+        (0..self.paths.len()).filter(move |&path| std::mem::replace(&mut is_kept[self.paths[path].end as usize], false))
     }
 
     /// The way of the segment that ends at this node, of length 1; none at a root.

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
@@ -170,9 +171,7 @@ impl Width {
     pub fn apply(&self, skeleton: &mut Skeleton) -> Result<(), String> {
         match self {
             Self::Constant(radius) => {
-                for node in &mut skeleton.nodes {
-                    node.radius = *radius;
-                }
+                skeleton.nodes.par_iter_mut().for_each(|node| node.radius = *radius);
                 Ok(())
             }
             Self::Taper(taper) => taper.apply(skeleton),
