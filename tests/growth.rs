@@ -470,6 +470,44 @@ fn plants_share_their_voxels() {
     assert!(c.nodes.iter().filter(|n| n.parent.is_none()).all(|n| b.nodes.iter().any(|m| m.position == n.position)));
 }
 
+/// Where two would be too near to each other in one round the one with the better score grows, of equals the first.
+#[test]
+fn conflicts_go_by_score_then_by_order() {
+    let meet = |first: f64, second: f64| {
+        let step = |name: &str, x: f64, straight: f64| {
+            format!(
+                "[grow.{name}]\nspace = \"air\"\nfrom.at = [[{x}, 0, 1]]\nwidth.constant = 0.01\nby.voxels = {{ step = 0.1, rounds = 9, tries = 1, turn = [0, 0], apart = 0.12, straight = {straight}, light = {{ sky = 0 }}, heading = [{}, 0, 0] }}\n",
+                -x
+            )
+        };
+        let space = "[space.air]\nshape.box = { min = [-1, -1, 0], max = [1, 1, 2] }\nnodes.voxels = { side = 0.05 }\n";
+        let all = grown(&scene(&format!("{space}{}{}", step("a", -0.55, first), step("b", 0.55, second))));
+        [0, 1].map(|i| all[i].skeleton.nodes.len())
+    };
+    // They meet after four steps, and there is room for one more.
+    assert_eq!(meet(2.0, 1.0), [6, 5]);
+    assert_eq!(meet(1.0, 2.0), [5, 6]);
+    assert_eq!(meet(1.0, 1.0), [6, 5]);
+}
+
+/// Amin's three outputs: trunk, limbs and twigs are objects of their own, with materials of their own.
+#[test]
+fn each_segment_is_an_object() {
+    for figure in ["papers/amin-fig1", "papers/amin-fig2", "papers/amin-fig3"] {
+        let folder = tempfile::tempdir().unwrap();
+        let output = run_in(folder.path(), &["export", figure, "--to", "pov", "-o", "."]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let inc = support::files_below(folder.path(), "inc").remove(0);
+        let inc = fs::read_to_string(inc).unwrap();
+        for name in ["Trunk", "Limbs", "Twigs"] {
+            assert!(
+                inc.lines().any(|line| line.starts_with("#declare") && line.contains(name)),
+                "{figure} has no {name}"
+            );
+        }
+    }
+}
+
 /// A space of a billion voxels costs what is in it.
 #[test]
 fn a_billion_voxels_are_allowed() {

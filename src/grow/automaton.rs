@@ -19,6 +19,8 @@ const OFF: f64 = 1.5;
 const ROOM: f64 = 4.0;
 /// A direction that is bent to a surface keeps at least this share of its step, and grows to no more than the other.
 const BENT: [f64; 2] = [0.5, 1.5];
+/// Farther back nobody is a relative.
+const MOST_KIN: usize = 64;
 /// How often a direction is bent, and a point where a limb starts.
 const BENDS: usize = 3;
 const START_BENDS: usize = 16;
@@ -189,7 +191,7 @@ impl Voxels {
 
     /// How far relatives are not in each other's way, in nodes.
     fn kin(&self) -> usize {
-        libm::ceil(self.apart / self.step * 2.0) as usize + 2
+        (libm::ceil(self.apart / self.step * 2.0) as usize + 2).min(MOST_KIN)
     }
 }
 

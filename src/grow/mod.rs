@@ -8,6 +8,7 @@ mod construction;
 mod dbm;
 mod dla;
 mod endpoints;
+mod finish;
 mod fractal;
 mod grammar;
 mod influence;

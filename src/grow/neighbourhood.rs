@@ -28,7 +28,7 @@ pub(super) struct Near {
 /// All twigs, in cells of a grid.
 pub(super) struct Neighbourhood {
     side: f64,
-    cells: FxHashMap<[i32; 3], u32>,
+    cells: FxHashMap<[i64; 3], u32>,
     twigs: Vec<Twig>,
 }
 
@@ -60,8 +60,9 @@ impl Neighbourhood {
         self.twigs.len() as u32
     }
 
-    fn cell(&self, p: DVec3) -> [i32; 3] {
-        p.to_array().map(|c| libm::floor(c / self.side) as i32)
+    fn cell(&self, p: DVec3) -> [i64; 3] {
+        // Far from where any number ends.
+        p.to_array().map(|c| libm::floor(c / self.side).clamp(-1e18, 1e18) as i64)
     }
 
     /// Adds a piece of a limb with the number of the one before it and its own number in its plant; its number here.

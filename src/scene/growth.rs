@@ -3,9 +3,12 @@
 use super::resolve::Resolver;
 use crate::grow::{
     Attractor, AttractorSpec, Branches, BranchesSpec, Cling, FromSpec, LightSense, MethodSpec, Segments, SegmentsSpec,
-    StepSpec, Voxels, VoxelsSpec,
+    Space, StepSpec, Voxels, VoxelsSpec,
 };
 use crate::math::{DVec3, Degrees, Point};
+
+/// Foliage that reaches farther, in voxels, is refused: every node fills so many to all sides.
+const MOST_FOLIAGE: f64 = 24.0;
 
 impl Resolver<'_> {
     /// Least and greatest, in order and in radians.
@@ -69,12 +72,24 @@ impl Resolver<'_> {
     }
 
     /// Growth by voxels of the step at `place`.
-    pub(super) fn voxels(&mut self, place: &str, step: &StepSpec, spec: &VoxelsSpec) -> Option<Voxels> {
+    pub(super) fn voxels(
+        &mut self,
+        place: &str,
+        step: &StepSpec,
+        spec: &VoxelsSpec,
+        space: Option<&Space>,
+    ) -> Option<Voxels> {
         let at = |key: &str| format!("{place}.by.voxels.{key}");
         if let FromSpec::All(_) = &step.from {
             self.wrong(&format!("{place}.from.all"), "limbs in voxels start at points or at ends".to_owned());
         }
         self.free(place, step);
+        if let Some(Space::Voxels(space)) = space
+            && spec.foliage > MOST_FOLIAGE * space.side
+        {
+            let message = format!("foliage reaches {MOST_FOLIAGE} voxels at most: {}", MOST_FOLIAGE * space.side);
+            self.wrong(&at("foliage"), message);
+        }
         let branches = spec.branches.map(|branches| {
             self.in_order(&at("branches.age"), branches.age.map(f64::from));
             (branches.age, self.angles(&at("branches.angle"), branches.angle))

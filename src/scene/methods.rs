@@ -134,7 +134,7 @@ impl Resolver<'_> {
         Some(match &spec.by {
             MethodSpec::Paths => Method::Paths,
             MethodSpec::Segments(segments) => Method::Segments(self.segments(place, spec, segments)?),
-            MethodSpec::Voxels(voxels) => Method::Voxels(self.voxels(place, spec, voxels)?),
+            MethodSpec::Voxels(voxels) => Method::Voxels(self.voxels(place, spec, voxels, space)?),
             MethodSpec::Fractal(fractal) => {
                 for (key, set) in &spec.to {
                     if set.count.is_none() || set.near.is_some() || set.shell.is_some() {
