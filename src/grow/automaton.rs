@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 use super::neighbourhood::{Near, Neighbourhood};
 use super::segments::{Attractor, strayed};
 use super::starts::{Start, branch_name};
-use super::{GrowError, LightSense, Source, Step, VoxelSpace};
+use super::{GrowError, LightSense, Method, Source, Step, VoxelSpace};
 use crate::geom::{Occupancy, Shape};
 use crate::math::{DVec3, Progress, Stream};
 use crate::skeleton::{Path, Skeleton, SkeletonNode};
@@ -195,6 +195,15 @@ impl Voxels {
     }
 }
 
+/// A space with all that grows in it.
+struct Garden<'a> {
+    space: &'a VoxelSpace,
+    plants: Vec<Plant<'a>>,
+    voxels: Occupancy,
+    others: Neighbourhood,
+    tips: Vec<Tip>,
+}
+
 /// Grows `steps` together in `space`, which are all by voxels, among what `before` grew there: each one's skeleton, and the
 /// number of voxels that something is in.
 pub(super) fn grow_together(
@@ -207,87 +216,106 @@ pub(super) fn grow_together(
 ) -> Result<(Vec<Skeleton>, u64), GrowError> {
     let mut plants: Vec<Plant<'_>> = Vec::with_capacity(steps.len());
     for step in steps {
-        let super::Method::Voxels(voxels) = &step.method else { continue };
+        let Method::Voxels(voxels) = &step.method else { continue };
         let stream = Stream::new(seed, &format!("voxels/{}", step.name));
         plants.push(Plant { step, voxels, stream, skeleton: Skeleton::new(step.classes.clone()) });
     }
-    let mut voxels = space.voxels();
-    let reach =
-        plants.iter().map(|p| p.voxels.apart * ROOM + p.voxels.step * (1.0 + 2.0 * BENT[1])).fold(0.0, f64::max);
-    let mut others = Neighbourhood::new(reach);
-    let mut known: FxHashMap<[u64; 3], u32> = FxHashMap::default();
-    for skeleton in before {
-        let mut numbers: Vec<u32> = Vec::with_capacity(skeleton.nodes.len());
-        for node in &skeleton.nodes {
-            let from = node.parent.map_or(node.position, |p| skeleton.nodes[p as usize].position);
-            voxels.insert_line(from, node.position);
-            let number = others.add(from, node.position, node.parent.map(|p| numbers[p as usize]), u32::MAX);
-            numbers.push(number);
-            known.entry(node.position.to_array().map(f64::to_bits)).or_insert(number);
-        }
-    }
-    let mut tips: Vec<Tip> = Vec::new();
-    for (index, plant) in plants.iter_mut().enumerate() {
-        tips.extend(plant.sow(index, space, &known, &mut others, grown)?);
-    }
-    let rounds = plants.iter().map(|plant| plant.voxels.rounds).max().unwrap_or(0);
+    // How far is asked for, and the longest piece that could reach to there.
+    let asked = plants.iter().map(|p| p.voxels.apart * ROOM + p.voxels.step * BENT[1]).fold(0.0, f64::max);
+    let steps = plants.iter().map(|p| p.voxels.step * BENT[1]);
+    let pieces = before.iter().flat_map(|s| s.segments()).map(|(a, b)| a.position.distance(b.position));
+    let longest = steps.chain(pieces).fold(0.0, f64::max);
+    let mut garden =
+        Garden { space, plants, voxels: space.voxels(), others: Neighbourhood::new(asked + longest), tips: Vec::new() };
+    garden.sow(before, grown)?;
+    let rounds = garden.plants.iter().map(|plant| plant.voxels.rounds).max().unwrap_or(0);
     for round in 0..rounds {
-        let choices: Vec<Option<Choice>> = tips
-            .par_iter()
-            .with_min_len(8)
-            .map_init(Vec::new, |near, tip| {
-                let Plant { voxels: own, stream, .. } = &plants[tip.step];
-                if round >= own.rounds {
-                    return None;
-                }
-                others.gather(tip.start.at, own.apart * ROOM + own.step * BENT[1], tip.node, own.kin(), near);
-                let random = stream.nth(tip.start.name).nth(u64::from(round));
-                own.choose(tip, space, &voxels, near, random)
-            })
-            .collect();
-        // The best first; of equals the one that began first.
-        let mut order: Vec<(usize, Choice)> =
-            choices.into_iter().enumerate().filter_map(|(i, choice)| Some((i, choice?))).collect();
-        order.sort_by(|(i, a), (j, b)| b.score.total_cmp(&a.score).then(i.cmp(j)));
-        let fresh = others.len();
-        let mut grown_on = vec![false; tips.len()];
-        let mut begun: Vec<(usize, Tip)> = Vec::new();
-        let mut near = Vec::new();
-        for &(i, Choice { at, .. }) in &order {
-            let plant = &mut plants[tips[i].step];
-            let own = plant.voxels;
-            grown_on[i] = plant.skeleton.nodes.len() < own.nodes as usize;
-            if !grown_on[i] {
-                continue;
-            }
-            let from = tips[i].start.at;
-            others.gather_from(fresh, from, own.apart + own.step * BENT[1], tips[i].node, own.kin(), &mut near);
-            // Another was first: it tries again next round.
-            if near.iter().any(|near| !near.is_kin && near.twig.distance(from, at) < own.apart) {
-                continue;
-            }
-            voxels.insert_line(from, at);
-            if own.foliage > 0.0 {
-                voxels.insert_ball(at, own.foliage);
-            }
-            begun.extend(plant.extend(&mut tips[i], at, round, &mut others).map(|branch| (i, branch)));
-        }
-        // Branches come after the limb that they leave: so the order of limbs is the order in which they began.
-        let mut kept = grown_on.into_iter();
-        tips.retain(|_| kept.next().unwrap_or(false));
-        begun.sort_by_key(|(i, _)| *i);
-        for (_, mut branch) in begun {
-            let plant = &mut plants[branch.step];
-            let root = plant.skeleton.paths[branch.limb as usize].root;
-            branch.limb = plant.begin(branch.start.name, root);
-            tips.push(branch);
-        }
-        if tips.is_empty() {
+        let choices = garden.choose(round);
+        garden.grow(&choices, round);
+        if garden.tips.is_empty() {
             break;
         }
         progress.report("grow", f64::from(round + 1) / f64::from(rounds))?;
     }
-    Ok((plants.into_iter().map(Plant::finish).collect(), voxels.count()))
+    Ok((garden.plants.into_iter().map(Plant::finish).collect(), garden.voxels.count()))
+}
+
+impl Garden<'_> {
+    /// Puts in what grew before, and the tips that all plants start with.
+    fn sow(&mut self, before: &[&Skeleton], grown: &[Option<&Skeleton>]) -> Result<(), GrowError> {
+        let mut known: FxHashMap<[u64; 3], u32> = FxHashMap::default();
+        for skeleton in before {
+            let mut numbers: Vec<u32> = Vec::with_capacity(skeleton.nodes.len());
+            for node in &skeleton.nodes {
+                let from = node.parent.map_or(node.position, |p| skeleton.nodes[p as usize].position);
+                self.voxels.insert_line(from, node.position);
+                let parent = node.parent.map(|p| numbers[p as usize]);
+                let number = self.others.add(from, node.position, parent, u32::MAX);
+                numbers.push(number);
+                known.entry(node.position.to_array().map(f64::to_bits)).or_insert(number);
+            }
+        }
+        for (index, plant) in self.plants.iter_mut().enumerate() {
+            self.tips.extend(plant.sow(index, self.space, &known, &mut self.others, grown)?);
+        }
+        Ok(())
+    }
+
+    /// What each tip would best do against what the rounds before made.
+    fn choose(&self, round: u32) -> Vec<Option<Choice>> {
+        let choose = |near: &mut Vec<Near>, tip: &Tip| {
+            let Plant { voxels: own, stream, .. } = &self.plants[tip.step];
+            if round >= own.rounds {
+                return None;
+            }
+            let reach = own.apart * ROOM + own.step * BENT[1];
+            self.others.gather(tip.start.at, reach, tip.node, own.kin(), near);
+            let random = stream.nth(tip.start.name).nth(u64::from(round));
+            own.choose(tip, self.space, &self.voxels, near, random)
+        };
+        self.tips.par_iter().with_min_len(8).map_init(Vec::new, choose).collect()
+    }
+
+    /// Lets all grow that can, the best first, of equals the one that began first; tips that had no choice are gone.
+    fn grow(&mut self, choices: &[Option<Choice>], round: u32) {
+        let mut order: Vec<(usize, Choice)> =
+            choices.iter().enumerate().filter_map(|(i, choice)| Some((i, (*choice)?))).collect();
+        order.sort_by(|(i, a), (j, b)| b.score.total_cmp(&a.score).then(i.cmp(j)));
+        let fresh = self.others.len();
+        let mut is_alive = vec![false; self.tips.len()];
+        let mut begun: Vec<(usize, Tip)> = Vec::new();
+        let mut near = Vec::new();
+        for (i, Choice { at, .. }) in order {
+            let tip = &mut self.tips[i];
+            let plant = &mut self.plants[tip.step];
+            let own = plant.voxels;
+            is_alive[i] = plant.skeleton.nodes.len() < own.nodes as usize;
+            if !is_alive[i] {
+                continue;
+            }
+            let from = tip.start.at;
+            self.others.gather_from(fresh, from, own.apart + own.step * BENT[1], tip.node, own.kin(), &mut near);
+            // Another was first: it tries again next round.
+            if near.iter().any(|near| !near.is_kin && near.twig.distance(from, at) < own.apart) {
+                continue;
+            }
+            self.voxels.insert_line(from, at);
+            if own.foliage > 0.0 {
+                self.voxels.insert_ball(at, own.foliage);
+            }
+            begun.extend(plant.extend(tip, at, round, &mut self.others).map(|branch| (i, branch)));
+        }
+        let mut is_alive = is_alive.into_iter();
+        self.tips.retain(|_| is_alive.next().unwrap_or(false));
+        // In the order of the limbs that they leave.
+        begun.sort_by_key(|(i, _)| *i);
+        for (_, mut branch) in begun {
+            let plant = &mut self.plants[branch.step];
+            let root = plant.skeleton.paths[branch.limb as usize].root;
+            branch.limb = plant.begin(branch.start.name, root);
+            self.tips.push(branch);
+        }
+    }
 }
 
 impl Plant<'_> {

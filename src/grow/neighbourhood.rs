@@ -141,17 +141,20 @@ mod tests {
 
     #[test]
     fn relatives_are_left_out() {
-        let mut all = Neighbourhood::new(3.0);
+        let mut all = Neighbourhood::new(4.0);
         let at = |x: f64| DVec3::new(x, 0.0, 0.0);
         let mut parent = None;
         for i in 0..6 {
             parent = Some(all.add(at(f64::from(i) - 1.0), at(f64::from(i)), parent, i));
         }
         let stranger = all.add(at(5.0), at(6.0), None, NONE);
+        let sister = all.add(at(4.0), at(4.0) + DVec3::Y, Some(4), 9);
         let mut near = Vec::new();
-        all.gather(at(5.0), 2.5, 5, 2, &mut near);
-        // 5, 4 and 3 are its own; by a common ancestor within two nodes 2 is kin.
-        let found: Vec<(u32, bool)> = near.iter().map(|near| (near.twig.own, near.is_kin)).collect();
-        assert_eq!(found, [(2, true), (all.twigs[stranger as usize].own, false)]);
+        all.gather(at(5.0), 3.5, 5, 2, &mut near);
+        // 5, 4 and 3 are its own; 2 is farther back; what leaves 4 is kin.
+        let mut found: Vec<(u32, bool)> = near.iter().map(|near| (near.twig.own, near.is_kin)).collect();
+        found.sort_unstable();
+        assert_eq!(found, [(2, false), (9, true), (NONE, false)]);
+        assert!(all.own(sister) == 9 && all.own(stranger) == NONE);
     }
 }
