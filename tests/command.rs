@@ -48,11 +48,9 @@ fn bad(from: &str, to: &str, words: &[&str]) {
 
 #[test]
 fn bad_scenes_get_one_clear_error() {
-    bad(
-        "space = \"sheet\"",
-        "spcae = \"sheet\"",
-        &["twig.toml:6:1", "did you mean `space`", "the key `space` is missing"],
-    );
+    bad("space = \"sheet\"", "spcae = \"sheet\"", &["twig.toml:6:1", "did you mean `space`"]);
+    bad("space = \"sheet\"", "", &["grow.twig.space", "this way of growing needs a `space`"]);
+    bad("nodes.lattice", "nodez.lattice", &["did you mean `nodes`", "the key `nodes` is missing"]);
     bad("spacing = 0.1", "spacing = \"wide\"", &["twig.toml:4", "expected a number", "found text"]);
     bad("spacing = 0.1", "spacing = nan", &["expected a number, found NaN"]);
     bad("spacing = 0.1", "spacing = -1", &["above 0", "found -1"]);

@@ -69,9 +69,13 @@ fn watch(folder: &Path, args: &[&str]) {
 }
 
 #[test]
-fn the_scene_works() {
+fn the_scenes_work() {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("twig.toml"), &blocks("toml")[0]).unwrap();
-    succeed_in(folder.path(), &["check", "twig"]);
-    succeed_in(folder.path(), &["export", "twig", "--to", "svg"]);
+    let scenes = blocks("toml");
+    assert!(scenes.len() >= 4);
+    for scene in scenes {
+        fs::write(folder.path().join("scene.toml"), scene).unwrap();
+        succeed_in(folder.path(), &["check", "scene"]);
+        succeed_in(folder.path(), &["info", "scene", "--json"]);
+    }
 }
