@@ -11,7 +11,7 @@ use lichtenberg::math::DVec3;
 use lichtenberg::scene::{Override, Source, load_frame};
 use lichtenberg::skeleton::{Skeleton, measure};
 use support::plants::{degrees, grown, only, scene, way};
-use support::{embedded, run_in, text};
+use support::{embedded, refuses, run_in, text};
 
 /// Angle of `v` about `axis`, from a direction that depends on the axis alone, in degrees from 0 to 360.
 fn roll(v: DVec3, axis: DVec3) -> f64 {
@@ -409,13 +409,6 @@ grow = ["ivy", "stem"]
         ("from.at = [[0, 0, 0.1]]", "from.at = [[0, 0, 5]]", "grow.ivy.from", "starts outside of the space"),
         ("from.at = [[0, 0, 0.1]]", "from.all = \"stem\"", "grow.ivy.from.all", "at points or at ends"),
     ] {
-        assert!(base.contains(from), "{from}");
-        fs::write(folder.path().join("plant.toml"), base.replacen(from, to, 1)).unwrap();
-        let output = run_in(folder.path(), &["export", "plant.toml", "--to", "pov", "-o", "out"]);
-        let error = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{to}: {error}");
-        let flat = error.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(flat.contains(place) && flat.contains(says), "{to}: {error}");
-        assert!(!folder.path().join("out").exists());
+        refuses(folder.path(), base, [from, to], place, says);
     }
 }

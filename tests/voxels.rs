@@ -3,6 +3,7 @@
 mod support;
 
 use lichtenberg::math::DVec3;
+use lichtenberg::scene::check_claims;
 use lichtenberg::skeleton::{Skeleton, nearest};
 use proptest::prelude::*;
 use support::plants::{degrees, grown, only, scene, way};
@@ -174,4 +175,22 @@ fn a_billion_voxels_are_allowed() {
     let all = grown(&large);
     assert_eq!(all[0].skeleton.nodes.len(), 31);
     assert!(all[0].nodes > 50_000, "{}", all[0].nodes);
+}
+
+/// A mesh is sampled at every voxel: limbs cling to it within the side of one.
+#[test]
+fn limbs_cling_to_a_mesh() {
+    let plant = scene(
+        "[shape.vase]\nmesh = { file = \"scenes/vase.obj\" }\n\
+         [space.air]\nshape.shell = { of = \"vase\", outside = 0.5 }\nforbid = \"vase\"\nnodes.voxels = { side = 0.08 }\n\
+         [grow.ivy]\nspace = \"air\"\nfrom.at = [[0.9, 0, 0.5], [-0.9, 0, 0.5]]\nwidth.constant = 0.02\n\
+         by.voxels = { step = 0.1, rounds = 20, straight = 1, branches = { age = [2, 5] }, cling = { to = \"vase\", within = [0.02, 0.06] } }\n\
+         [claim.near]\nsays = \"near\"\nmeasure = \"farthest\"\nof = \"ivy\"\nshape = \"vase\"\nat_most = 0.14\n\
+         [claim.outside]\nsays = \"outside\"\nmeasure = \"nearest\"\nof = \"ivy\"\nshape = \"vase\"\nat_least = -0.06\n",
+    );
+    let all = grown(&plant);
+    assert!(all[0].skeleton.nodes.len() > 60, "{}", all[0].skeleton.nodes.len());
+    // Claims measure the mesh itself.
+    let findings = check_claims(&plant, &all);
+    assert!(findings.len() == 2 && findings.iter().all(|finding| finding.holds), "{findings:?}");
 }

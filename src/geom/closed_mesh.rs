@@ -1,6 +1,5 @@
 //! Closed triangle meshes as shapes: which points are inside, and how far the surface is.
 
-use std::cell::Cell;
 use std::collections::HashMap;
 
 use super::Bounds;
@@ -63,11 +62,28 @@ impl ClosedMesh {
     /// Signed distance of `p` from the surface, negative inside.
     #[must_use]
     pub fn distance(&self, p: DVec3) -> f64 {
-        let nearest = Cell::new(f64::INFINITY);
-        self.visit(0, 0, self.triangles.len(), &mut |bounds| bounds.distance(p) < nearest.get(), &mut |triangle| {
-            nearest.set(nearest.get().min(triangle_distance(p, triangle)));
-        });
-        if self.contains(p) { -nearest.get() } else { nearest.get() }
+        let mut nearest = f64::INFINITY;
+        self.nearest(p, [0, 0, self.triangles.len()], &mut nearest);
+        if self.contains(p) { -nearest } else { nearest }
+    }
+
+    /// Lowers `nearest` to the distance of the triangles of a box: a node, its first triangle and how many it has. The nearer
+    /// half comes first, so that most others are left out.
+    fn nearest(&self, p: DVec3, [node, first, count]: [usize; 3], nearest: &mut f64) {
+        if count <= LEAF {
+            let distances = self.triangles[first..first + count].iter().map(|triangle| triangle_distance(p, triangle));
+            *nearest = distances.fold(*nearest, f64::min);
+            return;
+        }
+        let half = count / 2;
+        let halves = [[2 * node + 1, first, half], [2 * node + 2, first + half, count - half]];
+        let far = halves.map(|[child, ..]| self.boxes[child].distance(p));
+        let order = if far[1] < far[0] { [1, 0] } else { [0, 1] };
+        for i in order {
+            if far[i] < *nearest {
+                self.nearest(p, halves[i], nearest);
+            }
+        }
     }
 
     fn contains(&self, p: DVec3) -> bool {

@@ -182,6 +182,7 @@ impl Occupancy {
                 return Vec::new();
             }
             let mut found = Vec::new();
+            let mut near_pairs = [false; CELLS];
             for block in 0..CELLS as i32 {
                 let at = each(block, first, BITS);
                 if !is_near(at, BITS) {
@@ -190,6 +191,14 @@ impl Occupancy {
                 let mut bits = Block::default();
                 for voxel in 0..CELLS as i32 {
                     let cell = each(voxel, at, 0);
+                    // Most of a block is not near: its pairs of voxels tell.
+                    let pair = cell.map(|c| c & !1);
+                    if cell == pair {
+                        near_pairs[voxel as usize] = is_near(pair, 1);
+                    }
+                    if !near_pairs[within(pair)] {
+                        continue;
+                    }
                     let d = shape.distance(self.middle(cell, 0));
                     let is_set = d <= 0.0 && d >= -deep && self.is_within(cell);
                     bits[voxel as usize / 64] |= u64::from(is_set) << (voxel % 64);

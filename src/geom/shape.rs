@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Bounds, ClosedMesh, Outline, Profile, Voxels};
+use super::{Bounds, ClosedMesh, Outline, Profile, Sampled, Voxels};
 use crate::math::{DMat3, DVec2, DVec3};
 
 /// A solid, or several combined, whose names and files are resolved.
@@ -91,6 +91,8 @@ pub enum Solid {
     Grown(usize, Bounds),
     /// A solid that grew.
     Voxels(Arc<Voxels>),
+    /// A shape of which samples are kept ([`Shape::sampled`]).
+    Sampled(Arc<Sampled>),
     /// A shape that is scaled, then turned, then moved.
     Placed {
         /// The shape.
@@ -223,6 +225,7 @@ impl Shape {
             }
             Solid::Grown(..) => f64::INFINITY,
             Solid::Voxels(voxels) => voxels.distance(p),
+            Solid::Sampled(sampled) => sampled.distance(p),
             Solid::Placed { shape, scale, turn, by } => {
                 shape.signed(turn.transpose() * (p - *by) / *scale, ellipsoid) * scale
             }
@@ -244,6 +247,7 @@ impl Shape {
             Solid::Shell { of, outside, inside } => {
                 Self::new(Solid::Shell { of: of.with_grown(grown), outside: *outside, inside: *inside })
             }
+            Solid::Sampled(sampled) => sampled.shape().with_grown(grown).sampled(sampled.spacing()),
             Solid::Placed { shape, scale, turn, by } => {
                 Self::new(Solid::Placed { shape: shape.with_grown(grown), scale: *scale, turn: *turn, by: *by })
             }
@@ -251,6 +255,25 @@ impl Shape {
             Solid::Intersection(of) => Self::new(Solid::Intersection(all(of))),
             Solid::Difference(of) => Self::new(Solid::Difference(all(of))),
             _ => self.clone(),
+        }
+    }
+
+    /// This shape with samples of its meshes, whose distances are dear, on a grid with this spacing.
+    #[must_use]
+    pub fn sampled(&self, spacing: f64) -> Self {
+        if self.has_mesh() {
+            Self::new(Solid::Sampled(Arc::new(Sampled::new(self.clone(), spacing))))
+        } else {
+            self.clone()
+        }
+    }
+
+    fn has_mesh(&self) -> bool {
+        match &*self.0 {
+            Solid::Mesh(_) => true,
+            Solid::Placed { shape, .. } | Solid::Shell { of: shape, .. } => shape.has_mesh(),
+            Solid::Union(of) | Solid::Intersection(of) | Solid::Difference(of) => of.iter().any(Self::has_mesh),
+            _ => false,
         }
     }
 
@@ -270,7 +293,7 @@ impl Shape {
     /// Is anything in it of which distances are approximate on both sides of its surface?
     fn is_sampled(&self) -> bool {
         match &*self.0 {
-            Solid::Voxels(_) | Solid::Shell { .. } => true,
+            Solid::Voxels(_) | Solid::Sampled(_) | Solid::Shell { .. } => true,
             Solid::Placed { shape, .. } => shape.is_sampled(),
             Solid::Union(of) | Solid::Intersection(of) | Solid::Difference(of) => of.iter().any(Self::is_sampled),
             _ => false,
@@ -320,6 +343,7 @@ impl Shape {
             }
             Solid::Grown(_, bounds) => *bounds,
             Solid::Voxels(voxels) => voxels.bounds(),
+            Solid::Sampled(sampled) => sampled.shape().bounds(),
             Solid::Placed { shape, scale, turn, by } => {
                 let corners = shape.bounds().corners().map(|p| *turn * (p * *scale) + *by);
                 corners.into_iter().fold(Bounds::EMPTY, |all, p| all.union(Bounds { min: p, max: p }))

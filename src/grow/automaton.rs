@@ -5,9 +5,10 @@ use rand::RngExt;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use super::neighbourhood::{Near, Neighbourhood};
+use super::neighbourhood::{Neighbour, Neighbourhood};
 use super::segments::{Attractor, strayed};
 use super::starts::{Start, branch_name};
+use super::step::bits;
 use super::{GrowError, LightSense, Method, Source, Step, VoxelSpace};
 use crate::geom::{Occupancy, Shape};
 use crate::math::{DVec3, Progress, Stream};
@@ -27,7 +28,7 @@ const START_BENDS: usize = 16;
 
 /// Growth by voxels, with its names resolved; angles are in radians.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Voxels {
+pub struct Automaton {
     /// How far a limb grows in a round, in scene units.
     pub step: f64,
     /// Rounds.
@@ -94,12 +95,12 @@ struct Choice {
 /// A step while it grows.
 struct Plant<'a> {
     step: &'a Step,
-    voxels: &'a Voxels,
+    own: &'a Automaton,
     stream: Stream,
     skeleton: Skeleton,
 }
 
-impl Voxels {
+impl Automaton {
     /// The normal of the surface that it clings to, at `p`.
     fn normal(&self, to: &Shape, p: DVec3) -> DVec3 {
         let off = self.step * 1e-3;
@@ -133,7 +134,7 @@ impl Voxels {
         tip: &Tip,
         space: &VoxelSpace,
         voxels: &Occupancy,
-        near: &[Near],
+        near: &[Neighbour],
         mut random: Stream,
     ) -> Option<Choice> {
         let Start { at: from, way, .. } = tip.start;
@@ -149,21 +150,20 @@ impl Voxels {
         for _ in 0..self.tries {
             let tried = strayed(way, angles, &mut random);
             let Some(at) = self.lead(from, tried) else { continue };
-            if !is_open(at) || !is_open((from + at) * 0.5) {
-                continue;
+            // Relatives are not in the way, but they take room: so branches part.
+            let mut nearest = ROOM * self.apart;
+            let mut is_free = true;
+            for near in near {
+                let apart = near.twig.distance(from, at);
+                is_free &= near.is_kin || apart >= self.apart;
+                nearest = if apart < nearest { apart } else { nearest };
             }
-            let apart = |near: &Near| near.twig.distance(from, at);
-            if near.iter().any(|near| !near.is_kin && apart(near) < self.apart) {
+            if !is_free || !is_open(at) || !is_open((from + at) * 0.5) {
                 continue;
             }
             let went = (at - from).normalize_or(tried);
             let mut score = self.straight * went.dot(way);
-            if self.room > 0.0 {
-                // Relatives too: so branches part.
-                let reach = ROOM * self.apart;
-                let nearest = near.iter().map(apart).fold(reach, |a, b| if b < a { b } else { a });
-                score += self.room * (nearest / reach.max(f64::MIN_POSITIVE));
-            }
+            score += self.room * (nearest / (ROOM * self.apart).max(f64::MIN_POSITIVE));
             if let Some(Attractor { at: goal, strength }) = self.toward {
                 score += strength * went.dot((goal - at).normalize_or_zero());
             }
@@ -195,6 +195,14 @@ impl Voxels {
     }
 }
 
+/// A piece of a limb takes up voxels, with its leaves.
+fn take_up(voxels: &mut Occupancy, from: DVec3, to: DVec3, foliage: f64) {
+    voxels.insert_line(from, to);
+    if foliage > 0.0 {
+        voxels.insert_ball(to, foliage);
+    }
+}
+
 /// A space with all that grows in it.
 struct Garden<'a> {
     space: &'a VoxelSpace,
@@ -209,26 +217,26 @@ struct Garden<'a> {
 pub(super) fn grow_together(
     steps: &[&Step],
     space: &VoxelSpace,
-    before: &[&Skeleton],
+    before: &[(&Step, &Skeleton)],
     seed: u64,
     grown: &[Option<&Skeleton>],
     progress: &Progress,
 ) -> Result<(Vec<Skeleton>, u64), GrowError> {
     let mut plants: Vec<Plant<'_>> = Vec::with_capacity(steps.len());
     for step in steps {
-        let Method::Voxels(voxels) = &step.method else { continue };
+        let Method::Voxels(own) = &step.method else { continue };
         let stream = Stream::new(seed, &format!("voxels/{}", step.name));
-        plants.push(Plant { step, voxels, stream, skeleton: Skeleton::new(step.classes.clone()) });
+        plants.push(Plant { step, own, stream, skeleton: Skeleton::new(step.classes.clone()) });
     }
     // How far is asked for, and the longest piece that could reach to there.
-    let asked = plants.iter().map(|p| p.voxels.apart * ROOM + p.voxels.step * BENT[1]).fold(0.0, f64::max);
-    let steps = plants.iter().map(|p| p.voxels.step * BENT[1]);
-    let pieces = before.iter().flat_map(|s| s.segments()).map(|(a, b)| a.position.distance(b.position));
+    let asked = plants.iter().map(|p| p.own.apart * ROOM + p.own.step * BENT[1]).fold(0.0, f64::max);
+    let steps = plants.iter().map(|p| p.own.step * BENT[1]);
+    let pieces = before.iter().flat_map(|(_, s)| s.segments()).map(|(a, b)| a.position.distance(b.position));
     let longest = steps.chain(pieces).fold(0.0, f64::max);
     let mut garden =
         Garden { space, plants, voxels: space.voxels(), others: Neighbourhood::new(asked + longest), tips: Vec::new() };
     garden.sow(before, grown)?;
-    let rounds = garden.plants.iter().map(|plant| plant.voxels.rounds).max().unwrap_or(0);
+    let rounds = garden.plants.iter().map(|plant| plant.own.rounds).max().unwrap_or(0);
     for round in 0..rounds {
         let choices = garden.choose(round);
         garden.grow(&choices, round);
@@ -242,17 +250,18 @@ pub(super) fn grow_together(
 
 impl Garden<'_> {
     /// Puts in what grew before, and the tips that all plants start with.
-    fn sow(&mut self, before: &[&Skeleton], grown: &[Option<&Skeleton>]) -> Result<(), GrowError> {
+    fn sow(&mut self, before: &[(&Step, &Skeleton)], grown: &[Option<&Skeleton>]) -> Result<(), GrowError> {
         let mut known: FxHashMap<[u64; 3], u32> = FxHashMap::default();
-        for skeleton in before {
+        for (step, skeleton) in before {
+            let foliage = if let Method::Voxels(own) = &step.method { own.foliage } else { 0.0 };
             let mut numbers: Vec<u32> = Vec::with_capacity(skeleton.nodes.len());
             for node in &skeleton.nodes {
                 let from = node.parent.map_or(node.position, |p| skeleton.nodes[p as usize].position);
-                self.voxels.insert_line(from, node.position);
+                take_up(&mut self.voxels, from, node.position, foliage);
                 let parent = node.parent.map(|p| numbers[p as usize]);
                 let number = self.others.add(from, node.position, parent, u32::MAX);
                 numbers.push(number);
-                known.entry(node.position.to_array().map(f64::to_bits)).or_insert(number);
+                known.entry(bits(node.position)).or_insert(number);
             }
         }
         for (index, plant) in self.plants.iter_mut().enumerate() {
@@ -263,8 +272,8 @@ impl Garden<'_> {
 
     /// What each tip would best do against what the rounds before made.
     fn choose(&self, round: u32) -> Vec<Option<Choice>> {
-        let choose = |near: &mut Vec<Near>, tip: &Tip| {
-            let Plant { voxels: own, stream, .. } = &self.plants[tip.step];
+        let choose = |near: &mut Vec<Neighbour>, tip: &Tip| {
+            let Plant { own, stream, .. } = &self.plants[tip.step];
             if round >= own.rounds {
                 return None;
             }
@@ -288,7 +297,7 @@ impl Garden<'_> {
         for (i, Choice { at, .. }) in order {
             let tip = &mut self.tips[i];
             let plant = &mut self.plants[tip.step];
-            let own = plant.voxels;
+            let own = plant.own;
             is_alive[i] = plant.skeleton.nodes.len() < own.nodes as usize;
             if !is_alive[i] {
                 continue;
@@ -299,10 +308,7 @@ impl Garden<'_> {
             if near.iter().any(|near| !near.is_kin && near.twig.distance(from, at) < own.apart) {
                 continue;
             }
-            self.voxels.insert_line(from, at);
-            if own.foliage > 0.0 {
-                self.voxels.insert_ball(at, own.foliage);
-            }
+            take_up(&mut self.voxels, from, at, own.foliage);
             begun.extend(plant.extend(tip, at, round, &mut self.others).map(|branch| (i, branch)));
         }
         let mut is_alive = is_alive.into_iter();
@@ -329,9 +335,9 @@ impl Plant<'_> {
         grown: &[Option<&Skeleton>],
     ) -> Result<Vec<Tip>, GrowError> {
         let mut tips = Vec::new();
-        for mut start in self.step.starts_of_limbs(self.voxels.heading, grown)? {
+        for mut start in self.step.starts_of_limbs(self.own.heading, grown)? {
             if matches!(self.step.source, Source::At(_)) {
-                start.at = self.voxels.bent(start.at, START_BENDS).unwrap_or(start.at);
+                start.at = self.own.bent(start.at, START_BENDS).unwrap_or(start.at);
             }
             let is_open =
                 space.shape.contains(start.at) && !space.forbid.as_ref().is_some_and(|f| f.contains(start.at));
@@ -344,9 +350,9 @@ impl Plant<'_> {
             let limb = self.begin(start.name, self.skeleton.nodes.len() as u32);
             let root = SkeletonNode { branch: limb, ..SkeletonNode::new(start.at, None, 0.0, 0) };
             // What it grows from is no stranger.
-            let before = known.get(&start.at.to_array().map(f64::to_bits)).copied();
+            let before = known.get(&bits(start.at)).copied();
             let node = self.push(root, before, others);
-            let due = self.voxels.due(0, &mut self.stream.nth(start.name).nth(u64::MAX));
+            let due = self.own.due(0, &mut self.stream.nth(start.name).nth(u64::MAX));
             tips.push(Tip { step: index, start, node, limb, age: 0, due, is_branch: false });
         }
         Ok(tips)
@@ -380,8 +386,8 @@ impl Plant<'_> {
             return None;
         }
         let name = branch_name(tip.start.name, tip.age, 0);
-        tip.due = self.voxels.due(tip.age, &mut self.stream.nth(tip.start.name).nth(u64::MAX - u64::from(round)));
-        let due = self.voxels.due(0, &mut self.stream.nth(name).nth(u64::MAX));
+        tip.due = self.own.due(tip.age, &mut self.stream.nth(tip.start.name).nth(u64::MAX - u64::from(round)));
+        let due = self.own.due(0, &mut self.stream.nth(name).nth(u64::MAX));
         Some(Tip { start: Start { name, ..tip.start }, age: 0, due, is_branch: true, ..tip.clone() })
     }
 

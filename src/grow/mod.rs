@@ -32,7 +32,7 @@ mod step;
 mod voxel_space;
 mod voxels_spec;
 
-pub use automaton::{Cling, Voxels};
+pub use automaton::{Automaton, Cling};
 pub use construction::{Mark, MarkKind};
 pub use dbm::{Dbm, DbmSpec, SIDE, Solver};
 pub use dla::{DlaSpec, Walk};

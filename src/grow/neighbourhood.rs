@@ -19,7 +19,7 @@ pub(super) struct Twig {
 
 /// A twig that is near a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Near {
+pub(super) struct Neighbour {
     pub twig: Twig,
     /// Do they have a common ancestor not far back? Relatives start in the same place: they are not in each other's way.
     pub is_kin: bool,
@@ -84,12 +84,12 @@ impl Neighbourhood {
 
     /// All that comes within `reach` of `p`, but for the node `of` and its ancestors, as far as `kin` nodes back; so far common
     /// ancestors make relatives too.
-    pub fn gather(&self, p: DVec3, reach: f64, of: u32, kin: usize, near: &mut Vec<Near>) {
+    pub fn gather(&self, p: DVec3, reach: f64, of: u32, kin: usize, near: &mut Vec<Neighbour>) {
         self.gather_from(0, p, reach, of, kin, near);
     }
 
     /// The same of twigs with the number `first` or a later one.
-    pub fn gather_from(&self, first: u32, p: DVec3, reach: f64, of: u32, kin: usize, near: &mut Vec<Near>) {
+    pub fn gather_from(&self, first: u32, p: DVec3, reach: f64, of: u32, kin: usize, near: &mut Vec<Neighbour>) {
         near.clear();
         let [x, y, z] = self.cell(p);
         for dz in -1..=1 {
@@ -100,7 +100,7 @@ impl Neighbourhood {
                     while next != NONE && next >= first {
                         let twig = self.twigs[next as usize];
                         if twig.distance(p, p) <= reach && self.ancestors(of, kin).all(|a| a != next) {
-                            near.push(Near { twig, is_kin: self.is_kin(next, of, kin) });
+                            near.push(Neighbour { twig, is_kin: self.is_kin(next, of, kin) });
                         }
                         next = twig.before;
                     }

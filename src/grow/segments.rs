@@ -164,7 +164,7 @@ fn turned(way: DVec3, angle: f64, turn: f64) -> DVec3 {
 }
 
 /// A number between the two.
-pub(super) fn between([least, most]: [f64; 2], random: &mut Stream) -> f64 {
+fn between([least, most]: [f64; 2], random: &mut Stream) -> f64 {
     least + (most - least) * random.random::<f64>()
 }
 
@@ -369,6 +369,8 @@ impl Growing {
         });
         let limbs = self.growths.iter().flat_map(|growth| &growth.limbs);
         let paths = limbs.zip(ends).map(|(limb, end)| Path { end: end.into_inner(), ..*limb }).collect();
+        // As much memory as they took is given back side by side.
+        self.growths.into_par_iter().for_each(drop);
         Skeleton { nodes, paths, classes }
     }
 }

@@ -80,6 +80,7 @@ impl Step {
                     found.insert(*step);
                 }
                 Solid::Shell { of, .. } => visit(of, found),
+                Solid::Sampled(sampled) => visit(sampled.shape(), found),
                 Solid::Placed { shape, .. } => visit(shape, found),
                 Solid::Union(of) | Solid::Intersection(of) | Solid::Difference(of) => {
                     of.iter().for_each(|shape| visit(shape, found));

@@ -7,8 +7,8 @@ use rustc_hash::FxHashMap;
 use super::automaton::grow_together;
 use super::construction::{Mark, MarkKind, construction};
 use super::{
-    Dbm, DlaSpec, Endpoints, FractalSpec, LatticeSpace, Near, Placement, Refine, Regions, RegionsSpec, Repeat, SIDE,
-    Segments, Solver, Space, Unreached, VoxelSpace, Voxels,
+    Automaton, Dbm, DlaSpec, Endpoints, FractalSpec, LatticeSpace, Near, Placement, Refine, Regions, RegionsSpec,
+    Repeat, SIDE, Segments, Solver, Space, Unreached, VoxelSpace,
 };
 use crate::geom::Shape;
 use crate::graph::{Graph, Lattice, LatticeError, Node};
@@ -91,7 +91,7 @@ pub enum Method {
     /// By segments, without a graph.
     Segments(Segments),
     /// By a voxel space automaton.
-    Voxels(Voxels),
+    Voxels(Automaton),
     /// By the dielectric breakdown model.
     Dbm(Dbm),
 }
@@ -222,9 +222,12 @@ impl Step {
             (Some(Space::Lattice(space)), _) => space,
             (Some(Space::Voxels(space)), _) => {
                 let all = Self::grow_together(&[self], space, &[], seed, grown, progress)?;
-                return Ok(all.into_iter().next().unwrap_or_default());
+                return all
+                    .into_iter()
+                    .next()
+                    .ok_or_else(|| self.wrong_space("there only growth by voxels is possible"));
             }
-            (None, _) => return Ok(Grown::default()),
+            (None, _) => return Err(self.wrong_space("this way of growing needs a space")),
         };
         match space.neighbours.count() {
             4 => self.grow_in::<4>(space, seed, grown, show, progress),
@@ -276,8 +279,9 @@ impl Step {
                 let settled = skeleton.nodes.len() as u64;
                 (skeleton, 0, settled, Vec::new())
             }
-            // These have no lattice.
-            Method::Segments(_) | Method::Voxels(_) => (Skeleton::new(self.classes.clone()), 0, 0, Vec::new()),
+            Method::Segments(_) | Method::Voxels(_) => {
+                return Err(self.wrong_space("this way of growing needs no lattice"));
+            }
             Method::Paths => {
                 let goal = if show.contains(&MarkKind::Contours) { Goal::Everything } else { Goal::Nodes(&nodes) };
                 let later = self.delays(space, &lattice, &starts, grown);
@@ -329,6 +333,10 @@ impl Step {
         })
     }
 
+    fn wrong_space(&self, message: &str) -> GrowError {
+        GrowError::Scene { place: format!("grow.{}.space", self.name), message: message.to_owned() }
+    }
+
     /// Do both grow in the voxels of one space?
     #[must_use]
     pub fn shares_voxels(&self, other: &Self) -> bool {
@@ -342,7 +350,7 @@ impl Step {
     pub fn grow_together(
         steps: &[&Self],
         space: &VoxelSpace,
-        before: &[&Skeleton],
+        before: &[(&Self, &Skeleton)],
         seed: u64,
         grown: &[Option<&Skeleton>],
         progress: &Progress,

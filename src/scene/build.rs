@@ -98,7 +98,7 @@ pub fn grow(scene: &Resolved, show: &[MarkKind], max_memory: u64, progress: &Pro
             };
             let steps: Vec<&Step> = steps.iter().map(AsRef::as_ref).collect();
             let before = (0..grown.len()).filter(|&i| scene.steps[i].shares_voxels(steps[0]));
-            let before: Vec<&Skeleton> = before.filter_map(|i| earlier[i]).collect();
+            let before: Vec<(&Step, &Skeleton)> = before.filter_map(|i| Some((&scene.steps[i], earlier[i]?))).collect();
             Step::grow_together(&steps, space, &before, scene.seed, &earlier, progress)
         };
         // Side by side where memory allows; the result is the same.

@@ -1,9 +1,10 @@
 //! Growth by segments and by voxels: what they name is looked up, and how much will grow is told before it does.
 
 use super::resolve::Resolver;
+use crate::geom::Shape;
 use crate::grow::{
-    Attractor, AttractorSpec, Branches, BranchesSpec, Cling, FromSpec, LightSense, MethodSpec, Segments, SegmentsSpec,
-    Space, StepSpec, Voxels, VoxelsSpec,
+    Attractor, AttractorSpec, Automaton, Branches, BranchesSpec, Cling, FromSpec, LightSense, MethodSpec, Segments,
+    SegmentsSpec, Space, StepSpec, VoxelsSpec,
 };
 use crate::math::{DVec3, Degrees, Point};
 
@@ -78,7 +79,7 @@ impl Resolver<'_> {
         step: &StepSpec,
         spec: &VoxelsSpec,
         space: Option<&Space>,
-    ) -> Option<Voxels> {
+    ) -> Option<Automaton> {
         let at = |key: &str| format!("{place}.by.voxels.{key}");
         if let FromSpec::All(_) = &step.from {
             self.wrong(&format!("{place}.from.all"), "limbs in voxels start at points or at ends".to_owned());
@@ -101,18 +102,23 @@ impl Resolver<'_> {
                 self.wrong(&at("light.sun"), "the sun is below the horizon at these hours of that day".to_owned());
             }
         }
+        // Meshes are sampled at every voxel.
+        let sampled = |shape: Shape| match space {
+            Some(Space::Voxels(space)) => shape.sampled(space.side),
+            _ => shape,
+        };
         let cling = match &spec.cling {
             Some(cling) => {
                 self.in_order(&at("cling.within"), cling.within);
-                Some(Cling { to: self.shape(&at("cling.to"), &cling.to)?, within: cling.within })
+                Some(Cling { to: sampled(self.shape(&at("cling.to"), &cling.to)?), within: cling.within })
             }
             None => None,
         };
         let keep_from = match &spec.keep_from {
-            Some(keep) => Some((self.shape(&at("keep_from.shape"), &keep.shape)?, keep.by)),
+            Some(keep) => Some((sampled(self.shape(&at("keep_from.shape"), &keep.shape)?), keep.by)),
             None => None,
         };
-        Some(Voxels {
+        Some(Automaton {
             step: spec.step,
             rounds: spec.rounds,
             nodes: spec.nodes,

@@ -357,6 +357,9 @@ impl Resolver<'_> {
                 if spec.grow.is_empty() {
                     self.wrong(&place, "only what grew bears leaves".to_owned());
                 }
+                if leaves.facing.is_some_and(|p| p.0 == DVec3::ZERO) {
+                    self.wrong(&format!("{place}.facing"), "leaves face a direction, not the zero vector".to_owned());
+                }
                 let material = self.find(&format!("{place}.material"), "material", &leaves.material, names.clone())?;
                 let mesh = leaf(&leaves.shape, leaves.fold.radians(), self.folder);
                 let mesh = self.note(&format!("{place}.shape"), mesh)?;

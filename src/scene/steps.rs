@@ -70,7 +70,8 @@ impl Resolver<'_> {
                         format!("voxels have no `{key}`: nothing is planned in them"),
                     );
                 }
-                let space = VoxelSpace { shape, forbid, side };
+                let sampled = |shape: Shape| shape.sampled(side);
+                let space = VoxelSpace { shape: sampled(shape), forbid: forbid.map(sampled), side };
                 self.note(&format!("{place}.nodes.voxels"), space.check())?;
                 Some(Space::Voxels(space))
             }

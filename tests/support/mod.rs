@@ -30,6 +30,24 @@ pub fn succeed_in(folder: &Path, args: &[&str]) -> String {
     text(&output.stdout)
 }
 
+/// The scene `base` with `from` changed to `to` is refused with one clear error, that names `place` and says `says`; nothing is
+/// written.
+pub fn refuses(folder: &Path, base: &str, [from, to]: [&str; 2], place: &str, says: &str) {
+    let output = export_changed(folder, base, [from, to]);
+    let said = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(!said.contains("panicked"), "{said}");
+    assert_eq!(output.status.code(), Some(2), "{to}: {said}");
+    assert!(said.contains(place) && said.contains(says), "{to}: {said}");
+    assert!(!folder.join("out").exists(), "{to} left something");
+}
+
+/// What becomes of the scene `base` with `from` changed to `to`, exported to the folder `out`.
+pub fn export_changed(folder: &Path, base: &str, [from, to]: [&str; 2]) -> Output {
+    assert!(base.contains(from), "{from}");
+    std::fs::write(folder.join("changed.toml"), base.replacen(from, to, 1)).expect("a scene is written");
+    run_in(folder, &["export", "changed.toml", "--to", "pov", "-o", "out"])
+}
+
 pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
