@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::film::{Data, Picture, Sample, data, mean};
 use super::sampling::numbers;
-use super::smooth::{MARGIN, smooth};
+use super::smooth::{Face, MARGIN, smooth};
 use super::world::{Within, World};
 use crate::bvh::Ray;
 use crate::math::{Cancelled, Colour, DVec3, Progress};
@@ -109,19 +109,23 @@ pub fn render(world: &World<'_>, view: &View, progress: &Progress) -> Result<Pic
     let right = (left + width + MARGIN).min(view.size[0]);
     let bottom = (top + height + MARGIN).min(view.size[1]);
     let wide = View { crop: [x, y, right - x, bottom - y], ..*view };
-    let (mut picture, is_ground) = trace_tiles(world, &wide, progress)?;
-    picture.pixels = smooth(picture.width, &picture.pixels, &is_ground);
+    let (mut picture, faces) = trace_tiles(world, &wide, progress)?;
+    picture.pixels = smooth(picture.width, &picture.pixels, &faces);
     Ok(picture.cut([left - x, top - y, width, height]))
 }
 
-/// Traces a view, and tells where all samples met the ground.
-fn trace_tiles(world: &World<'_>, view: &View, progress: &Progress) -> Result<(Picture, Vec<bool>), Cancelled> {
+/// Traces a view, and tells what each pixel shows where all its samples met one face of even colour.
+fn trace_tiles(world: &World<'_>, view: &View, progress: &Progress) -> Result<(Picture, Vec<Option<Face>>), Cancelled> {
     let eye = Eye::new(world, view.size);
     let [left, top, width, height] = view.crop;
     let mut tiles: Vec<(u32, u32)> =
         (0..height.div_ceil(TILE)).flat_map(|y| (0..width.div_ceil(TILE)).map(move |x| (x, y))).collect();
     tiles.sort_by_key(|&(x, y)| morton(x) | morton(y) << 1);
-    let ground = world.model.objects.len() as u32 + 1;
+    let is_even: Vec<bool> = std::iter::once(false)
+        .chain(world.model.objects.iter().map(|o| world.model.materials[o.material].1.pattern.is_none()))
+        .chain(std::iter::once(true))
+        .collect();
+    let face = |s: &Sample| Face { object: s.object, normal: s.normal };
     let done = AtomicUsize::new(0);
     let traced: Vec<Tile> = tiles
         .par_iter()
@@ -133,7 +137,8 @@ fn trace_tiles(world: &World<'_>, view: &View, progress: &Progress) -> Result<(P
                 samples.clear();
                 sample(world, view, &eye, left + x, top + y, &mut samples);
                 tile.pixels.push(mean(&samples));
-                tile.is_ground.push(samples.iter().all(|s| s.object == ground));
+                let one = Face::of_all(samples.iter().map(face));
+                tile.faces.push(one.filter(|face| is_even[face.object as usize]));
                 if view.data {
                     tile.data.push(data(&samples));
                 }
@@ -145,26 +150,26 @@ fn trace_tiles(world: &World<'_>, view: &View, progress: &Progress) -> Result<(P
         .collect::<Result<_, Cancelled>>()?;
     let count = width as usize * height as usize;
     let mut picture = Picture { width, height, pixels: vec![[0.0; 4]; count], data: Vec::new() };
-    let mut is_ground = vec![false; count];
+    let mut faces = vec![None; count];
     picture.data = traced.first().and_then(|tile| tile.data.first()).map_or(Vec::new(), |&data| vec![data; count]);
     for (tile, &(tile_x, tile_y)) in traced.into_iter().zip(&tiles) {
         for (i, (x, y)) in places(tile_x, tile_y, width, height).enumerate() {
             let place = (y * width + x) as usize;
             picture.pixels[place] = tile.pixels[i];
-            is_ground[place] = tile.is_ground[i];
+            faces[place] = tile.faces[i];
             if view.data {
                 picture.data[place] = tile.data[i];
             }
         }
     }
-    Ok((picture, is_ground))
+    Ok((picture, faces))
 }
 
 /// A finished tile, pixel by pixel.
 #[derive(Default)]
 struct Tile {
     pixels: Vec<[f32; 4]>,
-    is_ground: Vec<bool>,
+    faces: Vec<Option<Face>>,
     data: Vec<Data>,
 }
 

@@ -1,6 +1,8 @@
-//! Less grain on the ground: its colour is even, so that what varies from pixel to pixel is chance or shadow.
+//! Less grain where colours are even, so that what varies from pixel to pixel is chance or shadow.
 
 use rayon::prelude::*;
+
+use crate::math::DVec3;
 
 /// Pixels on each side that a smoothed pixel may take from.
 const REACH: i64 = 3;
@@ -9,35 +11,53 @@ pub(super) const MARGIN: u32 = REACH as u32 + 1;
 /// Differences of light, after a first mean over neighbours, that count as chance; shadows' edges are stronger.
 const CHANCE: f32 = 0.025;
 
-/// Smooths the pixels that show nothing but ground, over such pixels alone (a bilateral filter, Tomasi and Manduchi
+/// Faces whose normals have a cosine of at least this are one.
+const ALIKE: f64 = 0.98;
+
+/// All that a pixel shows, where it shows one thing of one colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Face {
+    pub object: u32,
+    pub normal: DVec3,
+}
+
+impl Face {
+    fn is_like(&self, other: &Self) -> bool {
+        self.object == other.object && self.normal.dot(other.normal) >= ALIKE
+    }
+
+    /// The one face that all of these show, if they do.
+    pub fn of_all(mut faces: impl Iterator<Item = Self>) -> Option<Self> {
+        let first = faces.next()?;
+        faces.all(|face| face.is_like(&first)).then_some(first)
+    }
+}
+
+/// Smooths the pixels that show one face, over pixels of such faces alone (a bilateral filter, Tomasi and Manduchi
 /// 1998, told apart by means of three by three so that grain does not keep itself).
-pub(super) fn smooth(width: u32, pixels: &[[f32; 4]], is_ground: &[bool]) -> Vec<[f32; 4]> {
+pub(super) fn smooth(width: u32, pixels: &[[f32; 4]], faces: &[Option<Face>]) -> Vec<[f32; 4]> {
     let (w, h) = (i64::from(width), pixels.len() as i64 / i64::from(width));
-    let around = |i: usize, reach: i64| {
+    let around = |i: usize, own: Face, reach: i64| {
         let (x, y) = (i as i64 % w, i as i64 / w);
         let rows = (y - reach).max(0)..=(y + reach).min(h - 1);
         rows.flat_map(move |v| ((x - reach).max(0)..=(x + reach).min(w - 1)).map(move |u| (u, v)))
-            .filter(|&(u, v)| is_ground[(v * w + u) as usize])
+            .filter(move |&(u, v)| faces[(v * w + u) as usize].is_some_and(|face| face.is_like(&own)))
             .map(move |(u, v)| ((v * w + u) as usize, ((u - x) * (u - x) + (v - y) * (v - y)) as f32))
     };
     let light = |p: &[f32; 4]| 0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2];
     let means: Vec<f32> = (0..pixels.len())
         .into_par_iter()
         .map(|i| {
-            if !is_ground[i] {
-                return 0.0;
-            }
-            let (sum, n) = around(i, 1).fold((0.0, 0.0), |(sum, n), (j, _)| (sum + light(&pixels[j]), n + 1.0));
+            let Some(own) = faces[i] else { return 0.0 };
+            let (sum, n) = around(i, own, 1).fold((0.0, 0.0), |(sum, n), (j, _)| (sum + light(&pixels[j]), n + 1.0));
             sum / n
         })
         .collect();
     let smoothed = |i: usize| {
-        if !is_ground[i] {
-            return pixels[i];
-        }
+        let Some(own) = faces[i] else { return pixels[i] };
         let mut sum = [0.0; 4];
         let mut total = 0.0;
-        for (j, distance2) in around(i, REACH) {
+        for (j, distance2) in around(i, own, REACH) {
             let difference = (means[j] - means[i]) / CHANCE;
             let alike = 1.0 / (1.0 + difference * difference);
             let weight = alike * alike / (1.0 + distance2 * 0.15);
@@ -60,10 +80,14 @@ mod tests {
         let pixels: Vec<[f32; 4]> = (0..width * height)
             .map(|i| [if i % width < 16 { 0.2 } else { 0.6 } + noise(i) * 0.04, 0.4, 0.4, 1.0])
             .collect();
-        let mut is_ground = vec![true; pixels.len()];
-        is_ground[5] = false;
-        let smoothed = smooth(width, &pixels, &is_ground);
-        assert_eq!(smoothed[5], pixels[5]);
+        let ground = Face { object: 1, normal: DVec3::Z };
+        let mut faces = vec![Some(ground); pixels.len()];
+        faces[5] = None;
+        // Others take nothing from the ground, nor give it anything.
+        faces[40] = Some(Face { object: 2, ..ground });
+        faces[42] = Some(Face { normal: DVec3::X, ..ground });
+        let smoothed = smooth(width, &pixels, &faces);
+        assert!([5, 40, 42].iter().all(|&i| smoothed[i] == pixels[i]));
         let spread = |p: &[[f32; 4]]| {
             let part: Vec<f32> = (0..p.len()).filter(|i| i % 32 < 12).map(|i| p[i][0]).collect();
             let mean = part.iter().sum::<f32>() / part.len() as f32;
