@@ -173,6 +173,8 @@ fn bad_calls_get_one_clear_error() {
     fails(at, &["render", "twig", "--schematic", "-o", "{sede}.png"], 2, &["did you mean"]);
     fails(at, &["export", "twig", "--to", "svg", "--set", "grow.twig.to.tips.cuont=3"], 2, &["did you mean `count`"]);
     fails(at, &["export", "twig", "--to", "svg", "--set", "grow..x=3"], 2, &["path of keys"]);
+    fails(at, &["check", "papers/amin-fig4", "--set", "grow.sun.from.at.0=7"], 2, &["grow.sun.from.at"]);
+    fails(at, &["check", "papers/amin-fig4", "--set", "grow.sun.from.at.1=[0, 0, 0]"], 2, &["the first of a list"]);
     fails(at, &["export", "twig", "--to", "svg", "--size", "1x1"], 2, &["640x480"]);
     fails(at, &["new", "twig"], 2, &["there already"]);
     fails(at, &["new", "../twig"], 2, &["is no name"]);

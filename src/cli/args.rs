@@ -59,7 +59,7 @@ pub struct SceneArgs {
     /// Scene files, or names of embedded scenes (see `list`)
     #[arg(required = true, value_name = "SCENE")]
     pub scenes: Vec<String>,
-    /// Change a value of the scene, as in grow.elm.to.limbs.count=30
+    /// Change a value of the scene, as in grow.elm.to.limbs.count=30, or grow.elm.from.at.0=[1,0,0]
     #[arg(long, value_name = "PATH=VALUE", value_parser = parse_override)]
     pub set: Vec<Override>,
     /// Seed of all random numbers, in place of the scene's own

@@ -155,21 +155,23 @@ pub(super) fn apply(root: &mut Entry, overrides: &[Override], mistakes: &mut Vec
             mistakes.push(Mistake {
                 span: None,
                 place: change.path.clone(),
-                message: "a change needs a path of keys, such as grow.elm.to.limbs.count".to_owned(),
+                message: "a change needs a path of keys, such as grow.elm.to.limbs.count, or grow.elm.from.at.0 for the first of \
+                          a list".to_owned(),
             });
         }
     }
 }
 
-/// Sets what is at `keys` within `entry`; false where a list is in the way.
+/// Sets what is at `keys` within `entry`; false where a list has no such item.
 fn set(entry: &mut Entry, keys: &[&str], value: Value) -> bool {
     let Some((key, rest)) = keys.split_first() else {
         entry.value = value;
         entry.span = None;
         return true;
     };
-    if let Value::Array(_) = entry.value {
-        return false;
+    if let Value::Array(items) = &mut entry.value {
+        let item = key.parse().ok().and_then(|i: usize| items.get_mut(i));
+        return item.is_some_and(|item| set(item, rest, value));
     }
     if !matches!(entry.value, Value::Table(_)) {
         entry.value = Value::Table(BTreeMap::new());
