@@ -10,7 +10,7 @@ use lichtenberg::grow::Method;
 use lichtenberg::math::DVec3;
 use lichtenberg::scene::{Override, Source, load_frame};
 use lichtenberg::skeleton::{Skeleton, measure};
-use support::plants::{degrees, grown, only, scene, way};
+use support::plants::{degrees, grown, load_text, only, scene, way};
 use support::{embedded, refuses, run_in, text};
 
 /// Angle of `v` about `axis`, from a direction that depends on the axis alone, in degrees from 0 to 360.
@@ -134,9 +134,17 @@ fn branches_are_binomial() {
         let Method::Segments(segments) = &plant.steps[0].method else { panic!("segments") };
         let expected = segments.expected(segments.starts);
         assert!((expected.ends - ends).abs() < 1e-6);
-        let nodes: f64 = (1..=5).map(after).sum();
+        let nodes: f64 = (0..=5).map(after).sum();
         assert!((expected.nodes - nodes).abs() < 1e-6);
     }
+}
+
+/// The direction of growth that an attractor along `a` drew to `d`: (1 - strength) g = length d - strength a with |g| = 1, the
+/// larger root.
+fn undrawn(d: DVec3, a: DVec3, strength: f64) -> DVec3 {
+    let along = strength * d.dot(a);
+    let length = along + (along * along - strength * strength + (1.0 - strength) * (1.0 - strength)).sqrt();
+    (d * length - a * strength) / (1.0 - strength)
 }
 
 /// `strength * attractor_dir + (1 - strength) * growth_dir`, renormalised to the step: what is left of each step without the
@@ -158,10 +166,7 @@ fn attractors_follow_the_formula() {
                 assert!(degrees(d, a) < 1e-4);
                 continue;
             }
-            // (1 - strength) g = length d - strength a with |g| = 1: the larger root.
-            let along = strength * d.dot(a);
-            let length = along + (along * along - strength * strength + (1.0 - strength) * (1.0 - strength)).sqrt();
-            let g = (d * length - a * strength) / (1.0 - strength);
+            let g = undrawn(d, a, strength);
             let before = way(&s, i as u32 - 1).unwrap_or(DVec3::Z);
             angles.push(degrees(g, before));
         }
@@ -226,52 +231,128 @@ fn segments_carry_each_other_on() {
     assert!(twigs.nodes.iter().all(|n| n.age > limbs.nodes[0].age), "what grows later is younger");
 }
 
-/// A limb remembers its last branch into the next segment.
+/// A limb remembers its last branch into the next segment, and through one without branches.
 #[test]
 fn the_next_segment_remembers_the_last_branch() {
     let seeds: Vec<String> = (0..60).map(|i| format!("[{}, 0, 0]", i * 100)).collect();
-    let all = grown(&scene(&format!(
-        "[grow.a]\nfrom.at = [{}]\nby.segments = {{ depth = 1, branches = {{ chance = 1 }} }}\nwidth.constant = 1\n\
-         [grow.b]\nfrom.ends = \"a\"\nby.segments = {{ depth = 1, branches = {{ chance = 1 }} }}\nwidth.constant = 1\n",
-        seeds.join(", ")
-    )));
-    let [a, b] = [0, 1].map(|i| &all[i].skeleton);
-    let mut checked = 0;
-    for (i, limb) in a.limbs().iter().enumerate() {
-        let Some((_, of)) = limb.leaves else { continue };
-        let branch = way(a, limb.nodes[0]).unwrap();
-        let stem = a.paths[of as usize].end;
-        let axis = way(a, stem).unwrap();
-        // The start of the stem in the next segment has the same place in the list.
-        let children: Vec<u32> =
-            (0..b.nodes.len() as u32).filter(|&n| b.nodes[n as usize].parent == Some(of)).collect();
-        assert_eq!((children.len(), b.nodes[of as usize].position), (2, a.nodes[stem as usize].position), "limb {i}");
-        let next = way(b, children[1]).unwrap();
-        let flat = |v: DVec3| (v - axis * axis.dot(v)).normalize();
-        assert!(degrees(flat(next), flat(branch)) >= 90.0 - 1e-6);
-        checked += 1;
+    let branching = "by.segments = { depth = 1, branches = { chance = 1 } }\nwidth.constant = 1";
+    let bare = "[grow.b]\nfrom.ends = \"a\"\nby.segments = { depth = 1 }\nwidth.constant = 1\n";
+    for (between, from) in [("", "a"), (bare, "b")] {
+        let all = grown(&scene(&format!(
+            "[grow.a]\nfrom.at = [{}]\n{branching}\n{between}[grow.c]\nfrom.ends = \"{from}\"\n{branching}\n",
+            seeds.join(", ")
+        )));
+        let [first, before, last] = [0, all.len() - 2, all.len() - 1].map(|i| &all[i].skeleton);
+        let mut checked = 0;
+        for limb in first.limbs() {
+            let Some((_, of)) = limb.leaves else { continue };
+            let branch = way(first, limb.nodes[0]).unwrap();
+            // The start of the stem in the next segment has the same place in the list.
+            let stem = before.paths[of as usize].end;
+            let axis = way(before, stem).unwrap();
+            let children: Vec<u32> =
+                (0..last.nodes.len() as u32).filter(|&n| last.nodes[n as usize].parent == Some(of)).collect();
+            let root = last.nodes[of as usize].position;
+            assert_eq!((children.len(), root), (2, before.nodes[stem as usize].position));
+            let next = way(last, children[1]).unwrap();
+            let flat = |v: DVec3| (v - axis * axis.dot(v)).normalize();
+            assert!(degrees(flat(next), flat(branch)) >= 90.0 - 1e-4);
+            checked += 1;
+        }
+        assert_eq!(checked, 60);
     }
-    assert_eq!(checked, 60);
 }
 
-fn frame(name: &str, frame: f64) -> Skeleton {
+/// Branches are drawn to the attractor as stems are: without its share they leave at their angle and avoid the last one.
+#[test]
+fn branches_follow_the_attractor_too() {
+    let (strength, goal) = (0.3, DVec3::new(40.0, 10.0, 30.0));
+    let s = only(&format!(
+        "[grow.plant]\nfrom.at = [[0, 0, 0], [60, 0, 0]]\nby.segments = {{ depth = 12, branches = {{ chance = 0.5 }} }}\ntoward = {{ at = [40, 10, 30], strength = {strength} }}\nwidth.constant = 1\n"
+    ));
+    let mut last: Vec<Option<DVec3>> = vec![None; s.paths.len()];
+    let mut turns = 0;
+    for limb in s.limbs() {
+        let Some((from, of)) = limb.leaves else { continue };
+        let there = (goal - s.nodes[from as usize].position).normalize();
+        let drawn = undrawn(way(&s, limb.nodes[0]).unwrap(), there, strength);
+        let axis = way(&s, from).unwrap_or(DVec3::Z);
+        let angle = degrees(drawn, axis);
+        assert!((40.0 - 1e-5..=60.0 + 1e-5).contains(&angle), "{angle}");
+        let flat = |v: DVec3| (v - axis * axis.dot(v)).normalize();
+        if let Some(before) = last[of as usize].replace(drawn) {
+            assert!(degrees(flat(drawn), flat(before)) >= 90.0 - 1e-4);
+            turns += 1;
+        }
+    }
+    assert!(turns > 100, "{turns}");
+}
+
+/// Smoothing adds nodes; limbs sprout at those that grew.
+#[test]
+fn smoothing_adds_no_sprouts() {
+    let mut most = 0;
+    for smooth in [0, 1, 2] {
+        let all = grown(&scene(&format!(
+            "[grow.a]\nfrom.at = [[0, 0, 0]]\nby.segments = {{ depth = 30, jitter = [0, 60] }}\nsmooth = {smooth}\nwidth.constant = 1\n\
+             [grow.b]\nfrom.all = \"a\"\nby.segments = {{ depth = 1, sprout = {{ chance = 1 }} }}\nwidth.constant = 1\n"
+        )));
+        assert_eq!(all[1].skeleton.paths.len(), 30, "{smooth}");
+        most = most.max(all[0].skeleton.nodes.len());
+    }
+    assert!(most > 31, "smoothing adds nodes");
+}
+
+/// What each segment starts from is expected from the one before: the product over all, times the parts of a symmetry.
+#[test]
+fn expectations_multiply() {
+    let plant = scene(
+        "[grow.a]\nfrom.at = [[1, 0, 0], [2, 0, 0]]\nby.segments = { depth = 3, branches = { most = 2, chance = 0.5 } }\nsymmetry = { fold = 6 }\nwidth.constant = 1\n\
+         [grow.b]\nfrom.ends = \"a\"\nby.segments = { depth = 2, branches = { chance = 0.5 } }\nwidth.constant = 1\n\
+         [grow.c]\nfrom.all = \"b\"\nby.segments = { depth = 2, sprout = { most = 3, chance = 1 }, branches = { chance = 1 } }\nwidth.constant = 1\n",
+    );
+    let [a, b, c] = [0, 1, 2].map(|i| match &plant.steps[i].method {
+        Method::Segments(segments) => segments,
+        _ => panic!("segments"),
+    });
+    // 2 * 2^3 ends, six times; the limbs of b grow on at their starts and at (1 + 0.5) nodes after one step.
+    assert_eq!((a.starts, b.starts), (2.0, 96.0));
+    assert!((c.starts - 96.0 * 2.5).abs() < 1e-9, "{}", c.starts);
+    assert!((c.expected(c.starts).ends - 96.0 * 2.5 * 3.0 * 2.0).abs() < 1e-9);
+    // Many steps that each start from the ends of all before are counted once each.
+    let chain: String = (0..40)
+        .map(|i| {
+            let from: Vec<String> = (0..i).map(|j| format!("\"s{j:02}\"")).collect();
+            let from = if i == 0 { "from.at = [[0, 0, 0]]".to_owned() } else { format!("from.every_end = [{}]", from.join(", ")) };
+            let width = if i == 0 { "width.constant = 1" } else { "width.constant = 0.5" };
+            format!("[grow.s{i:02}]\n{from}\nby.segments = {{ depth = 1, inside.box = {{ min = [-9, -9, 0], max = [9, 9, 1] }} }}\n{width}\n")
+        })
+        .collect();
+    let error = load_text(&chain).unwrap_err();
+    assert!(error.to_string().contains("nodes are to be expected"), "2^38 starts: {error}");
+}
+
+fn frame(name: &str, step: usize, frame: f64) -> Skeleton {
     let (name, text, folder) = embedded_scenes().into_iter().find(|(n, ..)| n == name).unwrap();
     // Smoothing adds nodes where limbs bend.
     let straight = Override { path: "grow.plant.smooth".to_owned(), value: "0".to_owned() };
     let scene = load_frame(&Source { name, text: text.to_owned(), folder }, &[straight], Some(frame)).unwrap();
-    grown(&scene).remove(0).skeleton
+    grown(&scene).swap_remove(step).skeleton
 }
 
 /// Fig. 4: the same plant, limb for limb, to the right, above, to the left.
 #[test]
 fn a_plant_follows_its_attractor() {
-    let frames = [1.0, 2.0, 3.0].map(|f| frame("papers/amin-fig4", f));
+    let frames = [1.0, 2.0, 3.0].map(|f| frame("papers/amin-fig4", 0, f));
     let lean = frames.each_ref().map(|s| measure(s).lean);
     assert!(lean[0] > 0.4 && lean[1].abs() < 0.25 && lean[2] < -0.4, "{lean:?}");
-    let parents = |s: &Skeleton| s.nodes.iter().map(|n| n.parent).collect::<Vec<_>>();
-    assert!(parents(&frames[0]).len() > 100);
-    assert!(frames.windows(2).all(|pair| parents(&pair[0]) == parents(&pair[1])));
-    assert_ne!(frame("papers/amin-fig4", 1.5).nodes, frames[0].nodes, "between keys it moves on");
+    let limbs = |s: &Skeleton| s.paths.iter().map(|path| path.name).collect::<Vec<_>>();
+    assert!(limbs(&frames[0]).len() > 100);
+    assert!(frames.windows(2).all(|pair| limbs(&pair[0]) == limbs(&pair[1])));
+    assert_ne!(frame("papers/amin-fig4", 0, 1.5).nodes, frames[0].nodes, "between keys it moves on");
+    // The attractor itself is shown: a change of the first item of a list.
+    let sun = [1.0, 2.0, 3.0].map(|f| frame("papers/amin-fig4", 2, f).nodes[0].position);
+    assert!(sun[0].x == -sun[2].x && sun[1].x == 0.0 && sun[0].x > 50.0, "{sun:?}");
 }
 
 /// "Slaves may get nodes in different orders": here any number of threads grows the same plant.
@@ -301,6 +382,15 @@ fn limbs_have_random_numbers_of_their_own() {
     };
     let (alone, both) = (plant("", ""), plant(", [500, 0, 0]", ""));
     assert!(alone.nodes.iter().all(|n| both.nodes.iter().any(|m| m.position == n.position)));
+    // No two limbs have the same: neither branches and their stems, nor one seed's and another's, nor the next segment's.
+    let all = grown(&scene(
+        "[grow.a]\nfrom.at = [[0, 0, 0], [100, 0, 0], [200, 0, 0]]\nby.segments = { depth = 4, branches = { most = 3, chance = 0.9 } }\nwidth.constant = 1\n\
+         [grow.b]\nfrom.ends = \"a\"\nby.segments = { depth = 2, branches = { most = 2, chance = 0.9 } }\nwidth.constant = 1\n",
+    ));
+    for s in [&all[0].skeleton, &all[1].skeleton] {
+        let names: std::collections::BTreeSet<u64> = s.paths.iter().map(|path| path.name).collect();
+        assert!(names.len() > 300 && names.len() == s.paths.len(), "{} of {}", names.len(), s.paths.len());
+    }
     // What a box cuts off leaves the rest as it is.
     let cut = plant("", ", inside.box = { min = [-100, -100, 0], max = [1, 100, 100] }");
     assert!(cut.nodes.len() < alone.nodes.len() && cut.nodes.len() > 3);
@@ -348,6 +438,16 @@ grow = ["ivy", "stem"]
 "#;
     let segments = "by.segments = { depth = 5 }";
     let voxels = "by.voxels = { step = 0.2, rounds = 9 }";
+    // Twelve steps that all start from each other's ends.
+    let circle: String = (0..12)
+        .map(|i| {
+            let others: Vec<String> = (0..12).filter(|j| *j != i).map(|j| format!("\"c{j}\"")).collect();
+            format!(
+                "[grow.c{i}]\nfrom.every_end = [{}]\nby.segments = {{ depth = 1 }}\nwidth.constant = 0.1\n",
+                others.join(", ")
+            )
+        })
+        .collect();
     for (from, to, place, says) in [
         (
             segments,
@@ -408,6 +508,39 @@ grow = ["ivy", "stem"]
         ),
         ("from.at = [[0, 0, 0.1]]", "from.at = [[0, 0, 5]]", "grow.ivy.from", "starts outside of the space"),
         ("from.at = [[0, 0, 0.1]]", "from.all = \"stem\"", "grow.ivy.from.all", "at points or at ends"),
+        (
+            segments,
+            "by.segments = { depth = 10, branches = { most = 2, chance = 1 } }\nwidth.constant = 0.1\n[grow.twigs]\nfrom.ends = \"stem\"\nby.segments = { depth = 8, branches = { most = 2, chance = 1 } }",
+            "grow.twigs.by.segments",
+            "(59049 starts with (1 + 2 * 1)^8 ends each), more than 40000000",
+        ),
+        (
+            segments,
+            "by.segments = { depth = 14, branches = { most = 2, chance = 1 } }\nwidth.constant = 0.1\n[grow.twigs]\nfrom.ends = \"stem\"\nby.segments = { depth = 2, branches = { chance = 1 } }",
+            "grow",
+            "4.07e7 nodes are to be expected of all steps by segments",
+        ),
+        (
+            "from.at = [[0, 0, 0.1]]",
+            "from.at = [[0, 0, 0.1], [0.04, 0, 0.1]]",
+            "grow.ivy.from",
+            "nothing grows: every direction leads",
+        ),
+        (
+            voxels,
+            "by.voxels = { step = 0.2, rounds = 9, cling = { to.sphere = { centre = [0, 0, 1], radius = 0.5 }, within = [0.02, 0.02] } }",
+            "grow.ivy.from",
+            "no place lies within `cling.within`",
+        ),
+        (
+            segments,
+            &format!(
+                "by.segments = {{ depth = 5 }}\nwidth.constant = 0.1\n{}[grow.last]\nfrom.at = [[0, 0, 0]]\nby.segments = {{ depth = 1 }}",
+                circle
+            ),
+            "grow",
+            "wait",
+        ),
     ] {
         refuses(folder.path(), base, [from, to], place, says);
     }

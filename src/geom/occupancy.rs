@@ -9,10 +9,10 @@ use crate::math::DVec3;
 const BITS: u32 = 3;
 /// Voxels of a block, and blocks of a tile.
 const CELLS: usize = 1 << (3 * BITS);
-/// How many voxels deep a solid is filled: rays that start beside it cannot step over that.
-const DEEP: f64 = 3.0;
 /// Rays go on by this share of a voxel past each border.
 const STEP: f64 = 1e-6;
+/// Parts of a direction that are less than this count as none.
+const LEAST: f64 = 1e-12;
 
 /// A block of 8 x 8 x 8 voxels, a bit each.
 type Block = [u64; CELLS / 64];
@@ -167,9 +167,10 @@ impl Occupancy {
         self.low + DVec3::from_array(at.map(|c| f64::from(c) + half)) * self.side
     }
 
-    /// Takes up the voxels whose middles lie in `shape`, no deeper below its surface than a few voxels.
-    pub fn insert_shape(&mut self, shape: &Shape) {
-        let deep = DEEP * self.side;
+    /// Takes up the voxels whose middles lie in `shape`, no deeper below its surface than `deep`.
+    pub fn insert_shape(&mut self, shape: &Shape, deep: f64) {
+        // Every voxel is asked for once: samples would be kept for nothing.
+        let shape = &shape.unsampled();
         // Half the diagonal of a cell of the tree.
         let reach = |level: u32| f64::from(1 << level) * self.side * 0.5 * libm::sqrt(3.0);
         let is_near = |at: [i32; 3], level: u32| {
@@ -226,6 +227,8 @@ impl Occupancy {
     #[must_use]
     pub fn is_blocked(&self, origin: DVec3, way: DVec3, near: f64) -> bool {
         let from = (origin - self.low) / self.side;
+        // What is less crosses no border, and would be stopped at each.
+        let way = way.map(|c| if c.abs() < LEAST { 0.0 } else { c });
         let inverse = DVec3::new(inverse(way.x), inverse(way.y), inverse(way.z));
         // Upwards along an axis the way leaves a cell at its far side.
         let far = DVec3::new(side(way.x), side(way.y), side(way.z));
@@ -308,7 +311,7 @@ mod tests {
         let bounds = Bounds { min: DVec3::splat(-50.0), max: DVec3::splat(50.0) };
         let ball = Shape::new(Solid::Sphere { centre: DVec3::new(0.3, 0.1, -0.2), radius: 30.0 });
         let mut voxels = Occupancy::new(bounds, 0.5);
-        voxels.insert_shape(&ball);
+        voxels.insert_shape(&ball, 1.5);
         let mut count = 0;
         for i in 0..200 * 200 * 200_i32 {
             let p = bounds.min + DVec3::new((i % 200) as f64, (i / 200 % 200) as f64, (i / 40_000) as f64) * 0.5 + 0.25;
@@ -318,6 +321,17 @@ mod tests {
             assert_eq!(voxels.contains(p), is_in, "{p}");
         }
         assert_eq!(voxels.count(), count);
+    }
+
+    /// Along a border, but for what rounding leaves, a ray goes on from cell to cell.
+    #[test]
+    fn rays_along_borders_go_on() {
+        let bounds = Bounds { min: DVec3::ZERO, max: DVec3::new(4096.0, 4.0, 4.0) };
+        let mut voxels = Occupancy::new(bounds, 1.0);
+        let way = DVec3::new(1.0, -6e-17, 6e-17);
+        assert!(!voxels.is_blocked(DVec3::new(0.5, 2.0, 2.0), way, 0.0));
+        voxels.insert([4000, 2, 2]);
+        assert!(voxels.is_blocked(DVec3::new(0.5, 2.0, 2.0), way, 0.0));
     }
 
     /// A space of a billion voxels takes what is in it.

@@ -268,6 +268,12 @@ impl Shape {
         }
     }
 
+    /// This shape without samples, as it was before [`Shape::sampled`].
+    #[must_use]
+    pub fn unsampled(&self) -> Self {
+        if let Solid::Sampled(sampled) = &*self.0 { sampled.shape().clone() } else { self.clone() }
+    }
+
     fn has_mesh(&self) -> bool {
         match &*self.0 {
             Solid::Mesh(_) => true,

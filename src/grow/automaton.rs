@@ -14,7 +14,7 @@ use crate::geom::{Occupancy, Shape};
 use crate::math::{DVec3, Progress, Stream};
 use crate::skeleton::{Path, Skeleton, SkeletonNode};
 
-/// Rays start so many voxels, and the foliage, away from their limb: it does not shade itself.
+/// Rays start so many voxels away from their limb, and meet growth only beyond its foliage: it does not shade itself.
 const OFF: f64 = 1.5;
 /// Other growth counts up to this many times the least distance from it.
 const ROOM: f64 = 4.0;
@@ -73,8 +73,8 @@ pub struct Cling {
 /// A limb that is alive.
 #[derive(Clone)]
 struct Tip {
-    /// The step that it belongs to.
-    step: usize,
+    /// The plant that it belongs to.
+    plant: usize,
     start: Start,
     node: u32,
     limb: u32,
@@ -98,6 +98,13 @@ struct Plant<'a> {
     own: &'a Automaton,
     stream: Stream,
     skeleton: Skeleton,
+}
+
+impl Step {
+    /// How it grows by voxels, if it does.
+    fn automaton(&self) -> Option<&Automaton> {
+        if let Method::Voxels(own) = &self.method { Some(own) } else { None }
+    }
 }
 
 impl Automaton {
@@ -129,17 +136,12 @@ impl Automaton {
     }
 
     /// The best that `tip` can do against what has grown; none where no direction is open.
-    fn choose(
-        &self,
-        tip: &Tip,
-        space: &VoxelSpace,
-        voxels: &Occupancy,
-        near: &[Neighbour],
-        mut random: Stream,
-    ) -> Option<Choice> {
+    fn choose(&self, tip: &Tip, garden: &Garden<'_>, near: &[Neighbour], mut random: Stream) -> Option<Choice> {
+        let Garden { space, voxels, .. } = garden;
+        let solids = garden.solids.as_ref();
         let Start { at: from, way, .. } = tip.start;
         let angles = self.branches.filter(|_| tip.is_branch).map_or(self.turn, |(_, angles)| angles);
-        let shade = voxels.side() * OFF + self.foliage;
+        let off = voxels.side() * OFF;
         let is_open = |p: DVec3| {
             space.shape.contains(p)
                 && !space.forbid.as_ref().is_some_and(|forbid| forbid.contains(p))
@@ -150,24 +152,23 @@ impl Automaton {
         for _ in 0..self.tries {
             let tried = strayed(way, angles, &mut random);
             let Some(at) = self.lead(from, tried) else { continue };
-            // Relatives are not in the way, but they take room: so branches part.
-            let mut nearest = ROOM * self.apart;
-            let mut is_free = true;
-            for near in near {
-                let apart = near.twig.distance(from, at);
-                is_free &= near.is_kin || apart >= self.apart;
-                nearest = if apart < nearest { apart } else { nearest };
-            }
-            if !is_free || !is_open(at) || !is_open((from + at) * 0.5) {
+            if near.iter().any(|near| near.is_in_the_way(from, at, self.apart)) {
                 continue;
             }
+            // Nothing thicker than a voxel is stepped over.
+            let pieces = libm::ceil((at - from).length() / voxels.side()).max(2.0) as u32;
+            if !(1..=pieces).all(|i| is_open(from + (at - from) * (f64::from(i) / f64::from(pieces)))) {
+                continue;
+            }
+            // Relatives are not in the way, but they take room: so branches part.
+            let nearest = near.iter().map(|near| near.twig.distance(at, at)).fold(ROOM * self.apart, f64::min);
             let went = (at - from).normalize_or(tried);
             let mut score = self.straight * went.dot(way);
             score += self.room * (nearest / (ROOM * self.apart).max(f64::MIN_POSITIVE));
             if let Some(Attractor { at: goal, strength }) = self.toward {
                 score += strength * went.dot((goal - at).normalize_or_zero());
             }
-            open.push((score + self.light.most(went), score, at, went));
+            open.push((score + self.light.score(went, |_| true), score, at, went));
         }
         // Rays are dear: none are cast for what could not be the best even in full light.
         open.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -176,7 +177,11 @@ impl Automaton {
             if best.is_some_and(|best| most <= best.score) {
                 break;
             }
-            let score = rest + self.light.score(voxels, at, went, shade);
+            let is_free = |ray: DVec3| {
+                !solids.is_some_and(|solids| solids.is_blocked(at, ray, off))
+                    && !voxels.is_blocked(at, ray, off + self.foliage)
+            };
+            let score = rest + self.light.score(went, is_free);
             if best.is_none_or(|best| score > best.score) {
                 best = Some(Choice { score, at });
             }
@@ -208,8 +213,12 @@ struct Garden<'a> {
     space: &'a VoxelSpace,
     plants: Vec<Plant<'a>>,
     voxels: Occupancy,
+    /// What is forbidden alone, where there is foliage that light goes through.
+    solids: Option<Occupancy>,
     others: Neighbourhood,
     tips: Vec<Tip>,
+    /// The greatest least distance that anything here keeps.
+    apart: f64,
 }
 
 /// Grows `steps` together in `space`, which are all by voxels, among what `before` grew there: each one's skeleton, and the
@@ -224,22 +233,35 @@ pub(super) fn grow_together(
 ) -> Result<(Vec<Skeleton>, u64), GrowError> {
     let mut plants: Vec<Plant<'_>> = Vec::with_capacity(steps.len());
     for step in steps {
-        let Method::Voxels(own) = &step.method else { continue };
+        let Some(own) = step.automaton() else { continue };
         let stream = Stream::new(seed, &format!("voxels/{}", step.name));
         plants.push(Plant { step, own, stream, skeleton: Skeleton::new(step.classes.clone()) });
     }
     // How far is asked for, and the longest piece that could reach to there.
-    let asked = plants.iter().map(|p| p.own.apart * ROOM + p.own.step * BENT[1]).fold(0.0, f64::max);
+    let most = |of: &dyn Fn(&Automaton) -> f64| plants.iter().map(|p| of(p.own)).fold(0.0, f64::max);
+    let before_apart = before.iter().filter_map(|(step, _)| step.automaton()).map(|own| own.apart).fold(0.0, f64::max);
+    let apart = most(&|own| own.apart).max(before_apart);
+    let asked = apart * ROOM + most(&|own| own.step) * BENT[1];
     let steps = plants.iter().map(|p| p.own.step * BENT[1]);
     let pieces = before.iter().flat_map(|(_, s)| s.segments()).map(|(a, b)| a.position.distance(b.position));
     let longest = steps.chain(pieces).fold(0.0, f64::max);
-    let mut garden =
-        Garden { space, plants, voxels: space.voxels(), others: Neighbourhood::new(asked + longest), tips: Vec::new() };
+    let voxels = space.voxels();
+    let solids = (most(&|own| own.foliage) > 0.0).then(|| voxels.clone());
+    let others = Neighbourhood::new(asked + longest);
+    let mut garden = Garden { space, plants, voxels, solids, others, tips: Vec::new(), apart };
     garden.sow(before, grown)?;
     let rounds = garden.plants.iter().map(|plant| plant.own.rounds).max().unwrap_or(0);
     for round in 0..rounds {
         let choices = garden.choose(round);
         garden.grow(&choices, round);
+        if round == 0
+            && let Some(plant) = garden.plants.iter().find(|plant| plant.is_stuck())
+        {
+            return Err(plant.wrong(
+                "nothing grows: every direction leads out of the space, into what is forbidden or kept from, off the \
+                 surface, or nearer than `apart` to other growth",
+            ));
+        }
         if garden.tips.is_empty() {
             break;
         }
@@ -253,13 +275,13 @@ impl Garden<'_> {
     fn sow(&mut self, before: &[(&Step, &Skeleton)], grown: &[Option<&Skeleton>]) -> Result<(), GrowError> {
         let mut known: FxHashMap<[u64; 3], u32> = FxHashMap::default();
         for (step, skeleton) in before {
-            let foliage = if let Method::Voxels(own) = &step.method { own.foliage } else { 0.0 };
+            let (foliage, apart) = step.automaton().map_or((0.0, 0.0), |own| (own.foliage, own.apart));
             let mut numbers: Vec<u32> = Vec::with_capacity(skeleton.nodes.len());
             for node in &skeleton.nodes {
                 let from = node.parent.map_or(node.position, |p| skeleton.nodes[p as usize].position);
                 take_up(&mut self.voxels, from, node.position, foliage);
                 let parent = node.parent.map(|p| numbers[p as usize]);
-                let number = self.others.add(from, node.position, parent, u32::MAX);
+                let number = self.others.add(from, node.position, parent, u32::MAX, apart);
                 numbers.push(number);
                 known.entry(bits(node.position)).or_insert(number);
             }
@@ -273,14 +295,14 @@ impl Garden<'_> {
     /// What each tip would best do against what the rounds before made.
     fn choose(&self, round: u32) -> Vec<Option<Choice>> {
         let choose = |near: &mut Vec<Neighbour>, tip: &Tip| {
-            let Plant { own, stream, .. } = &self.plants[tip.step];
+            let Plant { own, stream, .. } = &self.plants[tip.plant];
             if round >= own.rounds {
                 return None;
             }
-            let reach = own.apart * ROOM + own.step * BENT[1];
+            let reach = (own.apart * ROOM).max(self.apart) + own.step * BENT[1];
             self.others.gather(tip.start.at, reach, tip.node, own.kin(), near);
             let random = stream.nth(tip.start.name).nth(u64::from(round));
-            own.choose(tip, self.space, &self.voxels, near, random)
+            own.choose(tip, self, near, random)
         };
         self.tips.par_iter().with_min_len(8).map_init(Vec::new, choose).collect()
     }
@@ -296,16 +318,16 @@ impl Garden<'_> {
         let mut near = Vec::new();
         for (i, Choice { at, .. }) in order {
             let tip = &mut self.tips[i];
-            let plant = &mut self.plants[tip.step];
+            let plant = &mut self.plants[tip.plant];
             let own = plant.own;
             is_alive[i] = plant.skeleton.nodes.len() < own.nodes as usize;
             if !is_alive[i] {
                 continue;
             }
             let from = tip.start.at;
-            self.others.gather_from(fresh, from, own.apart + own.step * BENT[1], tip.node, own.kin(), &mut near);
+            self.others.gather_from(fresh, from, self.apart + own.step * BENT[1], tip.node, own.kin(), &mut near);
             // Another was first: it tries again next round.
-            if near.iter().any(|near| !near.is_kin && near.twig.distance(from, at) < own.apart) {
+            if near.iter().any(|near| near.is_in_the_way(from, at, own.apart)) {
                 continue;
             }
             take_up(&mut self.voxels, from, at, own.foliage);
@@ -316,7 +338,7 @@ impl Garden<'_> {
         // In the order of the limbs that they leave.
         begun.sort_by_key(|(i, _)| *i);
         for (_, mut branch) in begun {
-            let plant = &mut self.plants[branch.step];
+            let plant = &mut self.plants[branch.plant];
             let root = plant.skeleton.paths[branch.limb as usize].root;
             branch.limb = plant.begin(branch.start.name, root);
             self.tips.push(branch);
@@ -325,6 +347,16 @@ impl Garden<'_> {
 }
 
 impl Plant<'_> {
+    /// An error about where it starts.
+    fn wrong(&self, message: impl Into<String>) -> GrowError {
+        GrowError::Scene { place: format!("grow.{}.from", self.step.name), message: message.into() }
+    }
+
+    /// Has nothing grown from the points that it starts at?
+    fn is_stuck(&self) -> bool {
+        matches!(self.step.source, Source::At(_)) && self.skeleton.nodes.iter().all(|node| node.parent.is_none())
+    }
+
     /// The tips that it starts with; `known` has what grew before, by place.
     fn sow(
         &mut self,
@@ -337,15 +369,15 @@ impl Plant<'_> {
         let mut tips = Vec::new();
         for mut start in self.step.starts_of_limbs(self.own.heading, grown)? {
             if matches!(self.step.source, Source::At(_)) {
-                start.at = self.own.bent(start.at, START_BENDS).unwrap_or(start.at);
+                start.at = self.own.bent(start.at, START_BENDS).ok_or_else(|| {
+                    self.wrong(format!("near {} no place lies within `cling.within` of the surface", start.at))
+                })?;
             }
             let is_open =
                 space.shape.contains(start.at) && !space.forbid.as_ref().is_some_and(|f| f.contains(start.at));
             if !is_open {
-                return Err(GrowError::Scene {
-                    place: format!("grow.{}.from", self.step.name),
-                    message: format!("the limb at {} starts outside of the space, or in what is forbidden", start.at),
-                });
+                let message = format!("the limb at {} starts outside of the space, or in what is forbidden", start.at);
+                return Err(self.wrong(message));
             }
             let limb = self.begin(start.name, self.skeleton.nodes.len() as u32);
             let root = SkeletonNode { branch: limb, ..SkeletonNode::new(start.at, None, 0.0, 0) };
@@ -353,21 +385,21 @@ impl Plant<'_> {
             let before = known.get(&bits(start.at)).copied();
             let node = self.push(root, before, others);
             let due = self.own.due(0, &mut self.stream.nth(start.name).nth(u64::MAX));
-            tips.push(Tip { step: index, start, node, limb, age: 0, due, is_branch: false });
+            tips.push(Tip { plant: index, start, node, limb, age: 0, due, is_branch: false });
         }
         Ok(tips)
     }
 
     /// Begins a limb of the tree with this root; its number.
     fn begin(&mut self, name: u64, root: u32) -> u32 {
-        self.skeleton.paths.push(Path { end: root, class: 0, root, name });
+        self.skeleton.paths.push(Path { end: root, root, name, ..Path::default() });
         self.skeleton.paths.len() as u32 - 1
     }
 
     /// Adds a node that grew from the one with the number `before`; its own number among all.
     fn push(&mut self, node: SkeletonNode, before: Option<u32>, others: &mut Neighbourhood) -> u32 {
         let from = node.parent.map_or(node.position, |parent| self.skeleton.nodes[parent as usize].position);
-        let number = others.add(from, node.position, before, self.skeleton.nodes.len() as u32);
+        let number = others.add(from, node.position, before, self.skeleton.nodes.len() as u32, self.own.apart);
         self.skeleton.nodes.push(node);
         number
     }
@@ -386,7 +418,7 @@ impl Plant<'_> {
             return None;
         }
         let name = branch_name(tip.start.name, tip.age, 0);
-        tip.due = self.own.due(tip.age, &mut self.stream.nth(tip.start.name).nth(u64::MAX - u64::from(round)));
+        tip.due = self.own.due(tip.age, &mut self.stream.nth(tip.start.name).nth(u64::MAX - 1 - u64::from(round)));
         let due = self.own.due(0, &mut self.stream.nth(name).nth(u64::MAX));
         Some(Tip { start: Start { name, ..tip.start }, age: 0, due, is_branch: true, ..tip.clone() })
     }

@@ -386,6 +386,6 @@ fn skeleton(cluster: &Cluster, classes: Vec<String>, place: impl Fn(DVec3) -> DV
         skeleton.nodes.push(SkeletonNode::new(place(p), parent, cost, 0));
     }
     let tips = (0..cluster.places.len() as u32).filter(|&i| is_tip[i as usize]);
-    skeleton.paths = tips.map(|end| Path { end, class: 0, root: 0, name: u64::from(end) }).collect();
+    skeleton.paths = tips.map(|end| Path { end, name: u64::from(end), ..Path::default() }).collect();
     skeleton
 }

@@ -225,7 +225,7 @@ impl Step {
                         fresh.push(node);
                     }
                     let name = skeleton.paths.len() as u64;
-                    skeleton.paths.push(Path { end: parent, class: set.class, root: 0, name });
+                    skeleton.paths.push(Path { end: parent, class: set.class, name, ..Path::default() });
                 }
             }
             progress.report("grow", (iteration + 1) as f64 / distances.len() as f64)?;

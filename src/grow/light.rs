@@ -1,7 +1,6 @@
 //! Light in voxels: which rays to the sky and to the sun are free.
 
 use super::{LightSenseSpec, SunSpec, sky};
-use crate::geom::Occupancy;
 use crate::math::{DVec3, rotation};
 
 /// Rays to the sky stay this far above the horizon, in radians from the vertical.
@@ -53,17 +52,8 @@ impl LightSense {
         Self { sky: (rays, spec.sky), sun }
     }
 
-    /// What a limb gets that grows to `at` along `way`; what is nearer than `near` takes no light.
-    pub(super) fn score(&self, voxels: &Occupancy, at: DVec3, way: DVec3, near: f64) -> f64 {
-        self.sum(way, |ray| !voxels.is_blocked(at, ray, near))
-    }
-
-    /// What it would get if nothing took any.
-    pub(super) fn most(&self, way: DVec3) -> f64 {
-        self.sum(way, |_| true)
-    }
-
-    fn sum(&self, way: DVec3, is_free: impl Fn(DVec3) -> bool) -> f64 {
+    /// What a limb gets that grows along `way`, of the rays that are free.
+    pub(super) fn score(&self, way: DVec3, is_free: impl Fn(DVec3) -> bool) -> f64 {
         let mut score = 0.0;
         for (rays, counts) in [&self.sky, &self.sun] {
             let mut seen = 0.0;

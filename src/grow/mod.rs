@@ -56,6 +56,6 @@ pub use spec::{
     EndpointSpec, FromSpec, LatticeSpec, MethodSpec, NearSpec, NodesSpec, ScatterSpec, SpaceSpec, SpreadSpec, StepSpec,
     Toward, Unreached, VoxelNodesSpec,
 };
-pub use step::{GrowError, Grown, Method, Part, Source, Step};
+pub use step::{GrowError, Grown, MOST_NODES, Method, Part, Source, Step};
 pub use voxel_space::VoxelSpace;
 pub use voxels_spec::{AgeBranchesSpec, ClingSpec, KeepFromSpec, LightSenseSpec, SunSpec, VoxelsSpec};

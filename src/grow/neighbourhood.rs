@@ -13,6 +13,8 @@ pub(super) struct Twig {
     parent: Option<u32>,
     /// Its number in its own plant.
     own: u32,
+    /// How far it keeps from other growth.
+    apart: f64,
     /// The twig before it in its cell.
     before: u32,
 }
@@ -23,6 +25,13 @@ pub(super) struct Neighbour {
     pub twig: Twig,
     /// Do they have a common ancestor not far back? Relatives start in the same place: they are not in each other's way.
     pub is_kin: bool,
+}
+
+impl Neighbour {
+    /// Does a segment come nearer to it than either keeps from other growth?
+    pub fn is_in_the_way(&self, from: DVec3, to: DVec3, apart: f64) -> bool {
+        !self.is_kin && self.twig.distance(from, to) < self.twig.apart.max(apart)
+    }
 }
 
 /// All twigs, in cells of a grid.
@@ -65,11 +74,12 @@ impl Neighbourhood {
         p.to_array().map(|c| libm::floor(c / self.side).clamp(-1e18, 1e18) as i64)
     }
 
-    /// Adds a piece of a limb with the number of the one before it and its own number in its plant; its number here.
-    pub fn add(&mut self, from: DVec3, to: DVec3, parent: Option<u32>, own: u32) -> u32 {
+    /// Adds a piece of a limb with the number of the one before it, its own number in its plant, and how far it keeps from
+    /// other growth; its number here.
+    pub fn add(&mut self, from: DVec3, to: DVec3, parent: Option<u32>, own: u32, apart: f64) -> u32 {
         let number = self.len();
         let before = self.cells.insert(self.cell(to), number).unwrap_or(NONE);
-        self.twigs.push(Twig { from, to, parent, own, before });
+        self.twigs.push(Twig { from, to, parent, own, apart, before });
         number
     }
 
@@ -126,7 +136,7 @@ mod tests {
         fn distances_are_least(p in prop::array::uniform12(-2.0..2.0)) {
             let [a, b, c, d] = [0, 3, 6, 9].map(|i| DVec3::new(p[i], p[i + 1], p[i + 2]));
             let mut all = Neighbourhood::new(9.0);
-            all.add(c, d, None, 0);
+            all.add(c, d, None, 0, 0.0);
             let found = all.twigs[0].distance(a, b);
             let mut least = f64::INFINITY;
             for i in 0..=60 {
@@ -145,10 +155,10 @@ mod tests {
         let at = |x: f64| DVec3::new(x, 0.0, 0.0);
         let mut parent = None;
         for i in 0..6 {
-            parent = Some(all.add(at(f64::from(i) - 1.0), at(f64::from(i)), parent, i));
+            parent = Some(all.add(at(f64::from(i) - 1.0), at(f64::from(i)), parent, i, 0.0));
         }
-        let stranger = all.add(at(5.0), at(6.0), None, NONE);
-        let sister = all.add(at(4.0), at(4.0) + DVec3::Y, Some(4), 9);
+        let stranger = all.add(at(5.0), at(6.0), None, NONE, 0.0);
+        let sister = all.add(at(4.0), at(4.0) + DVec3::Y, Some(4), 9, 0.0);
         let mut near = Vec::new();
         all.gather(at(5.0), 3.5, 5, 2, &mut near);
         // 5, 4 and 3 are its own; 2 is farther back; what leaves 4 is kin.

@@ -453,7 +453,7 @@ impl<'a> Rounds<'a> {
         for (i, (node, class)) in (1_u64..).zip(sprout.ends) {
             let node = named(node);
             let name = mix(end.name ^ mix(i));
-            skeleton.paths.push(Path { end: node, class, root: end.node, name });
+            skeleton.paths.push(Path { end: node, class, root: end.node, name, ..Path::default() });
             let loss = share.loss.unwrap_or_else(|| self.repeat.lifespan.lose(end.lifespan, &mut random));
             let lifespan = end.lifespan.saturating_sub(loss);
             let way = (skeleton.nodes[node as usize].position - root.position).normalize_or(end.way);

@@ -6,7 +6,7 @@ use rand::RngExt;
 use rayon::prelude::*;
 
 use super::starts::{Start, branch_name};
-use super::step::MOST_NODES;
+use super::step::{MOST_NODES, NODE_BYTES};
 use super::{GrowError, Source, Step};
 use crate::geom::Shape;
 use crate::math::{DVec3, Progress, Stream, frame_along};
@@ -28,6 +28,8 @@ pub struct Segments {
     pub branches: Option<Branches>,
     /// How they leave the step that they grow from.
     pub sprout: Option<Branches>,
+    /// How far the limbs that it sprouts from grew at a time, where they grew by segments.
+    pub along: Option<f64>,
     /// The way of limbs that start at points, of length 1.
     pub heading: DVec3,
     /// Where they stay.
@@ -61,9 +63,9 @@ pub struct Attractor {
 }
 
 /// How much is expected to grow.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Expected {
-    /// Nodes, those where limbs start left out.
+    /// Nodes, with those where limbs start.
     pub nodes: f64,
     /// Ends.
     pub ends: f64,
@@ -74,7 +76,7 @@ impl Expected {
     /// between. Where limbs sprout, the first time there are so many in place of what grows on.
     #[must_use]
     pub fn new(starts: f64, depth: u32, sprout: Option<f64>, branches: f64) -> Self {
-        let mut all = Self { nodes: 0.0, ends: starts };
+        let mut all = Self { nodes: starts, ends: starts };
         for place in 0..depth {
             all.ends = f64::min(all.ends * sprout.filter(|_| place == 0).unwrap_or(1.0 + branches), f64::MAX);
             all.nodes = f64::min(all.nodes + all.ends, f64::MAX);
@@ -130,6 +132,16 @@ struct Growth {
 }
 
 impl Growth {
+    /// Counts its roots from `first` on.
+    fn count_roots_from(&mut self, first: u32) {
+        for made in &mut self.made {
+            made.parent = made.parent.map(|root| root + first);
+            made.limb += if made.limb < NEW { first } else { 0 };
+        }
+        self.buds.iter_mut().for_each(|bud| bud.root += first);
+        self.limbs.iter_mut().for_each(|limb| limb.root += first);
+    }
+
     fn new(age: u32, tips: usize) -> Self {
         Self { age, made: Vec::with_capacity(2 * tips), buds: Vec::with_capacity(2 * tips), ..Self::default() }
     }
@@ -147,7 +159,8 @@ impl Growth {
     /// Adds a node with its bud, of a limb or of a new one.
     fn add(&mut self, made: Made, bud: Bud) {
         let limb = if made.limb == NEW {
-            self.limbs.push(Path { end: 0, class: 0, root: bud.root, name: bud.name });
+            let last = bud.last.to_array().map(|c| c as f32);
+            self.limbs.push(Path { root: bud.root, name: bud.name, last, ..Path::default() });
             NEW + self.limbs.len() as u32 - 1
         } else {
             made.limb
@@ -201,6 +214,11 @@ impl Segments {
         Expected::new(starts, self.depth, self.sprout.map(mean), self.branches.map_or(0.0, mean))
     }
 
+    /// Bytes that this takes.
+    pub(super) fn bytes_needed(&self, starts: f64) -> u64 {
+        self.expected(starts).nodes.min(MOST_NODES as f64) as u64 * NODE_BYTES
+    }
+
     /// A sentence where more nodes are expected than there may be.
     ///
     /// # Errors
@@ -210,11 +228,14 @@ impl Segments {
         if expected.nodes <= MOST_NODES as f64 {
             return Ok(expected);
         }
-        let branching = self.branches.map_or_else(String::new, |b| {
-            format!(" ({starts:.0} starts with (1 + {} * {})^{} ends each)", b.most, b.chance, self.depth)
-        });
+        let mean = |b: &Branches| format!("{} * {}", b.most, b.chance);
+        let depth = self.depth - u32::from(self.sprout.is_some());
+        let sprouts = self.sprout.as_ref().map(mean);
+        let branching = self.branches.as_ref().map(|b| format!("(1 + {})^{depth}", mean(b)));
+        let each: Vec<String> = sprouts.into_iter().chain(branching).collect();
+        let each = if each.is_empty() { "1".to_owned() } else { each.join(" * ") };
         Err(format!(
-            "{:.2e} nodes are to be expected{branching}, more than {MOST_NODES}: lower `depth`, `most` or `chance`",
+            "{:.2e} nodes are to be expected ({starts:.0} starts with {each} ends each), more than {MOST_NODES}: lower `depth`, `most` or `chance`",
             expected.nodes
         ))
     }
@@ -247,13 +268,13 @@ impl Segments {
         }
     }
 
-    /// Lets branches grow from `tip`, the first of them of `limb`; the way of the last.
+    /// Lets branches grow from `tip`, the first of them of `limb`; the way of the last, before anything attracts it.
     fn branch(&self, branches: &Branches, tip: &Tip, mut limb: u32, random: &mut Stream, growth: &mut Growth) -> DVec3 {
         let Start { at, way, mut last, name } = tip.start;
         for index in 0..branches.count(random) {
-            let branch = self.attracted(at, branches.way(way, last, random));
             // What the box cuts off changes nothing else.
-            last = branch;
+            last = branches.way(way, last, random);
+            let branch = self.attracted(at, last);
             let end = at + branch * self.step;
             if self.is_open(end) {
                 let name = if limb == NEW { branch_name(name, growth.age, index) } else { name };
@@ -265,19 +286,23 @@ impl Segments {
         last
     }
 
-    /// What sprouts along one limb, each place with its root; sprouts avoid each other as branches do.
-    fn sprouts(&self, sprout: &Branches, limb: Vec<Start>, stream: &Stream) -> Vec<(Start, Growth)> {
-        let mut last = DVec3::ZERO;
-        let mut all = Vec::new();
-        for start in limb {
-            let tip = Tip { start: Start { last, ..start }, node: 0, limb: 0, root: 0 };
-            let mut growth = Growth::default();
-            last = self.branch(sprout, &tip, tip.limb, &mut stream.nth(start.name).nth(0), &mut growth);
-            if !growth.made.is_empty() {
-                all.push((start, growth));
+    /// What sprouts along some limbs, and the roots that it sprouts from; sprouts of a limb avoid each other as branches do.
+    /// The first at each root is of that root's own limb. Roots are counted from 0.
+    fn sprouts(&self, sprout: &Branches, limbs: &[Vec<Start>], stream: &Stream) -> (Vec<Start>, Growth) {
+        let (mut roots, mut growth) = (Vec::new(), Growth::default());
+        for limb in limbs {
+            let mut last = DVec3::ZERO;
+            for start in limb {
+                let root = roots.len() as u32;
+                let tip = Tip { start: Start { last, ..*start }, node: root, limb: root, root };
+                let before = growth.made.len();
+                last = self.branch(sprout, &tip, root, &mut stream.nth(start.name).nth(0), &mut growth);
+                if growth.made.len() > before {
+                    roots.push(*start);
+                }
             }
         }
-        all
+        (roots, growth)
     }
 }
 
@@ -390,20 +415,18 @@ impl Step {
         let mut plant = Growing::default();
         let mut begin = 0;
         if let Some(sprout) = &segments.sprout {
-            let limbs = self.limbs_before(grown);
+            let limbs = self.limbs_before(segments.along, grown);
             let places: usize = limbs.iter().map(Vec::len).sum();
             segments.check(places as f64).map_err(|message| wrong("by.segments", message))?;
-            let sprouted: Vec<Vec<(Start, Growth)>> =
-                limbs.into_par_iter().map(|limb| segments.sprouts(sprout, limb, &stream)).collect();
-            let (starts, mut growths): (Vec<Start>, Vec<Growth>) = sprouted.into_iter().flatten().unzip();
-            plant.plant(&starts);
-            for (growth, root) in growths.iter_mut().zip(0..) {
-                growth.made.iter_mut().for_each(|made| made.parent = Some(root));
-                growth.buds.iter_mut().for_each(|bud| bud.root = root);
-                growth.limbs.iter_mut().for_each(|limb| limb.root = root);
-                // The first carries on the limb of its root.
-                growth.made[0].limb = root;
+            let sprouted: Vec<(Vec<Start>, Growth)> =
+                limbs.par_chunks(CHUNK).map(|limbs| segments.sprouts(sprout, limbs, &stream)).collect();
+            let (mut starts, mut growths) = (Vec::new(), Vec::new());
+            for (roots, mut growth) in sprouted {
+                growth.count_roots_from(starts.len() as u32);
+                starts.extend(roots);
+                growths.push(growth);
             }
+            plant.plant(&starts);
             plant.join(growths);
             begin = 1;
         } else {

@@ -1,8 +1,8 @@
 //! Where limbs start that no graph carries: at points, at the ends of what grew, or all along it.
 
 use super::{GrowError, Part, Source, Step};
-use crate::math::{DVec3, mix};
-use crate::skeleton::Skeleton;
+use crate::math::{DVec3, name_of};
+use crate::skeleton::{Path, Skeleton};
 
 /// Where a limb starts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,9 +17,14 @@ pub(super) struct Start {
     pub name: u64,
 }
 
+/// The name of a limb that carries on one with this name, of the source with this index; no branch has it.
+fn next_name(limb: u64, source: u64) -> u64 {
+    name_of(limb, u64::MAX - source)
+}
+
 /// The name of a branch: of a limb's node, counted from where the limb starts, the one with this index.
 pub(super) fn branch_name(limb: u64, node: u32, index: u32) -> u64 {
-    mix(mix(limb) ^ mix(u64::from(node) << 32 | u64::from(index)))
+    name_of(limb, u64::from(node) << 32 | u64::from(index))
 }
 
 impl Step {
@@ -43,7 +48,7 @@ impl Step {
                             at: skeleton.nodes[end as usize].position,
                             way: skeleton.way_into(end).unwrap_or(heading),
                             last: last[path],
-                            name: mix(skeleton.paths[path].name ^ mix(i)),
+                            name: next_name(skeleton.paths[path].name, i),
                         }
                     }));
                 }
@@ -56,13 +61,16 @@ impl Step {
     }
 
     /// The limbs of the steps that this one sprouts from, each as the places where it grew on, from its start: their
-    /// starts have the way of the limb there.
-    pub(super) fn limbs_before(&self, grown: &[Option<&Skeleton>]) -> Vec<Vec<Start>> {
+    /// starts have the way of the limb there. Where it grew by steps of a length, nodes that smoothing added between are
+    /// no such places.
+    pub(super) fn limbs_before(&self, step: Option<f64>, grown: &[Option<&Skeleton>]) -> Vec<Vec<Start>> {
+        let is_place = |cost: f64| step.is_none_or(|step| (cost / step - libm::round(cost / step)).abs() < 1e-6);
         let mut limbs = Vec::new();
         for (skeleton, i) in self.sources().iter().filter_map(|&step| grown[step]).zip(0..) {
             for (path, limb) in skeleton.paths.iter().zip(skeleton.limbs()) {
-                let name = mix(path.name ^ mix(i));
-                let on = limb.nodes.windows(2).zip(0..).map(|(pair, place)| {
+                let name = next_name(path.name, i);
+                let places = limb.nodes.windows(2).filter(|pair| is_place(skeleton.nodes[pair[0] as usize].cost));
+                let on = places.zip(0..).map(|(pair, place)| {
                     let [at, next] = [pair[0], pair[1]].map(|n| skeleton.nodes[n as usize].position);
                     let way = skeleton.way_into(pair[0]).unwrap_or((next - at).normalize_or(DVec3::Z));
                     Start { at, way, last: DVec3::ZERO, name: branch_name(name, place, 0) }
@@ -74,9 +82,10 @@ impl Step {
     }
 }
 
-/// For each path the way of the last branch of its limb; zero where it has none.
+/// For each path the way of the last branch of its limb, or of the limb that this carries on; zero where it has none.
 fn last_branches(skeleton: &Skeleton) -> Vec<DVec3> {
-    let mut last: Vec<(f64, DVec3)> = vec![(f64::NEG_INFINITY, DVec3::ZERO); skeleton.paths.len()];
+    let before = |path: &Path| (f64::NEG_INFINITY, DVec3::from_array(path.last.map(f64::from)));
+    let mut last: Vec<(f64, DVec3)> = skeleton.paths.iter().map(before).collect();
     let at = |node: u32| skeleton.nodes[node as usize];
     for limb in skeleton.limbs() {
         let (Some((from, path)), Some(&first)) = (limb.leaves, limb.nodes.first()) else { continue };

@@ -141,9 +141,9 @@ pub enum GrowError {
 }
 
 /// More nodes of a skeleton than this are not made of fewer.
-pub(super) const MOST_NODES: u64 = 40_000_000;
+pub const MOST_NODES: u64 = 40_000_000;
 /// Bytes that a node of a skeleton takes, with what is made of it.
-const NODE_BYTES: u64 = 256;
+pub(super) const NODE_BYTES: u64 = 256;
 
 impl Step {
     /// Bytes that growing it takes at its peak.
@@ -152,9 +152,7 @@ impl Step {
         let paths: u64 = self.endpoints.iter().map(|set| set.placement.count() as u64).sum();
         match &self.space {
             None => match &self.method {
-                Method::Segments(segments) => {
-                    (segments.expected(segments.starts).nodes.min(MOST_NODES as f64)) as u64 * NODE_BYTES
-                }
+                Method::Segments(segments) => segments.bytes_needed(segments.starts),
                 _ => 0,
             },
             Some(Space::Voxels(space)) => {
@@ -183,6 +181,20 @@ impl Step {
                 space.bytes_needed().saturating_add(skeleton).saturating_add(kept)
             }
         }
+    }
+
+    /// The same where it is known what has grown before: a step by segments may start from more than was expected.
+    #[must_use]
+    pub fn bytes_needed_from(&self, grown: &[Option<&Skeleton>]) -> u64 {
+        let Method::Segments(segments) = &self.method else { return self.bytes_needed() };
+        let before = self.sources().iter().filter_map(|&step| grown[step]);
+        let starts: usize = match &self.source {
+            Source::Steps(_, Part::All) => before.map(|s| s.nodes.len()).sum(),
+            Source::Steps(_, part) => before.map(|s| s.end_paths(*part == Part::EveryEnd).count()).sum(),
+            Source::At(points) => points.len(),
+            Source::Inside(_) | Source::Spread(_) => 0,
+        };
+        segments.bytes_needed(starts as f64)
     }
 
     /// The steps that must have grown before, by index.

@@ -83,7 +83,7 @@ pub struct AgeBranchesSpec {
 #[serde(deny_unknown_fields)]
 pub struct LightSenseSpec {
     /// What the sky counts.
-    #[serde(default)]
+    #[serde(default = "whole")]
     #[schemars(range(min = 0.0, max = 1000.0))]
     pub sky: f64,
     /// Rays to the sky.
@@ -97,7 +97,7 @@ pub struct LightSenseSpec {
 
 impl Default for LightSenseSpec {
     fn default() -> Self {
-        Self { sky: 1.0, rays: twelve(), sun: None }
+        Self { sky: whole(), rays: twelve(), sun: None }
     }
 }
 

@@ -20,6 +20,6 @@ pub use per_round::PerRound;
 pub use power::power;
 pub(crate) use prefetch::prefetch;
 pub use progress::{Cancelled, Progress};
-pub use random::{Stream, mix};
+pub use random::{Stream, mix, name_of};
 pub use rotation::{frame_along, rotation, turned_toward};
 pub use srgb::{from_srgb, srgb_byte, to_srgb};

@@ -16,6 +16,13 @@ pub const fn mix(x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
+/// The name of what comes of a thing with a name, by index: told apart from all that come of others.
+#[must_use]
+pub const fn name_of(parent: u64, index: u64) -> u64 {
+    // Neither 0 nor equal numbers may cancel out.
+    mix(mix(parent.wrapping_add(GOLDEN)) ^ index)
+}
+
 /// A named stream of random numbers.
 ///
 /// The n-th number depends on the seed, the name and n alone, so that streams never disturb each other and a

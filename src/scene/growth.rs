@@ -3,8 +3,8 @@
 use super::resolve::Resolver;
 use crate::geom::Shape;
 use crate::grow::{
-    Attractor, AttractorSpec, Automaton, Branches, BranchesSpec, Cling, FromSpec, LightSense, MethodSpec, Segments,
-    SegmentsSpec, Space, StepSpec, VoxelsSpec,
+    Attractor, AttractorSpec, Automaton, Branches, BranchesSpec, Cling, EndpointSpec, Expected, FromSpec, LightSense,
+    MOST_NODES, MethodSpec, Segments, SegmentsSpec, Space, StepSpec, VoxelsSpec,
 };
 use crate::math::{DVec3, Degrees, Point};
 
@@ -59,13 +59,20 @@ impl Resolver<'_> {
             jitter: self.angles(&at("jitter"), spec.jitter),
             branches: self.branches(&at("branches"), spec.branches),
             sprout: self.branches(&at("sprout"), spec.sprout),
+            along: match &step.from {
+                FromSpec::All(from) => match self.scene.grow.get(&from.name).map(|step| &step.by) {
+                    Some(MethodSpec::Segments(before)) => Some(before.step),
+                    _ => None,
+                },
+                _ => None,
+            },
             heading: self.heading(&at("heading"), spec.heading),
             inside: match &spec.inside {
                 Some(inside) => Some(self.shape(&at("inside"), inside)?),
                 None => None,
             },
             toward: step.toward.as_ref().map(attractor),
-            starts: self.starts(step, self.scene.grow.len()),
+            starts: self.starts(step),
         };
         let expected = segments.check(segments.starts);
         self.note(&format!("{place}.by.segments"), expected)?;
@@ -149,40 +156,60 @@ impl Resolver<'_> {
         }
     }
 
-    /// How many limbs of a step are expected to start; `most` steps are followed back.
-    fn starts(&self, step: &StepSpec, most: usize) -> f64 {
-        let grown = |name: &str| self.scene.grow.get(name).filter(|_| most > 0);
-        let ends = |name: &str| grown(name).map_or(0.0, |from| self.ends(from, most - 1));
+    /// Each step's nodes are within what there may be: are all of them?
+    pub(super) fn check_expected(&mut self) {
+        let scene = self.scene;
+        let most = MOST_NODES as f64;
+        let nodes: Vec<f64> = scene.grow.keys().map(|name| self.expected(name).nodes).collect();
+        let all: f64 = nodes.iter().sum();
+        if all > most && nodes.iter().all(|&nodes| nodes <= most) {
+            let message = format!(
+                "{all:.2e} nodes are to be expected of all steps by segments, more than {MOST_NODES}: lower `depth`, `most` or `chance`"
+            );
+            self.wrong("grow", message);
+        }
+    }
+
+    /// How many limbs of a step are expected to start.
+    fn starts(&mut self, step: &StepSpec) -> f64 {
         match &step.from {
             FromSpec::At(points) => points.len() as f64,
-            FromSpec::Ends(from) => ends(&from.name),
-            FromSpec::EveryEnd(all) => all.iter().map(|from| ends(&from.name)).sum(),
-            // Of a plan it is known when it has grown.
-            FromSpec::All(from) => match grown(&from.name).map(|step| (step, &step.by)) {
-                Some((from, MethodSpec::Segments(spec))) => {
-                    let starts = self.starts(from, most - 1);
-                    let expected = spec.expected(starts);
-                    starts + expected.nodes - expected.ends
-                }
-                _ => 0.0,
-            },
+            FromSpec::Ends(from) => self.expected(&from.name).ends,
+            FromSpec::EveryEnd(all) => all.iter().map(|from| self.expected(&from.name).ends).sum(),
+            FromSpec::All(from) => {
+                let expected = self.expected(&from.name);
+                (expected.nodes - expected.ends).max(0.0)
+            }
             FromSpec::Inside(_) | FromSpec::Spread(_) => 0.0,
         }
     }
 
-    /// How many ends of a step are expected.
-    fn ends(&self, step: &StepSpec, most: usize) -> f64 {
-        match &step.by {
-            MethodSpec::Segments(spec) => spec.expected(self.starts(step, most)).ends,
-            _ => step
-                .to
-                .values()
-                .map(|set| {
+    /// How much the step with this name is expected to grow; of a plan only its ends are known before.
+    fn expected(&mut self, name: &str) -> Expected {
+        if let Some(&known) = self.expected.get(name) {
+            return known;
+        }
+        // Nothing is expected of steps that wait for each other.
+        self.expected.insert(name.to_owned(), Expected::default());
+        let scene = self.scene;
+        let Some(step) = scene.grow.get(name) else { return Expected::default() };
+        let one = match &step.by {
+            MethodSpec::Segments(spec) => {
+                let starts = self.starts(step);
+                spec.expected(starts)
+            }
+            _ => {
+                let ends = |set: &EndpointSpec| {
                     let at = set.at.as_ref().map_or(0, Vec::len) as f64;
                     set.count.as_ref().and_then(crate::math::PerRound::once).unwrap_or(at)
-                })
-                .sum(),
-        }
+                };
+                Expected { ends: step.to.values().map(ends).sum(), ..Expected::default() }
+            }
+        };
+        let parts = step.symmetry.map_or(1.0, |symmetry| f64::from(symmetry.parts()));
+        let all = Expected { nodes: one.nodes * parts, ends: one.ends * parts };
+        self.expected.insert(name.to_owned(), all);
+        all
     }
 }
 

@@ -11,7 +11,7 @@ use crate::files::{
     resize_grey, resize_plate,
 };
 use crate::geom::{Shape, ShapeSpec};
-use crate::grow::{MarkKind, MethodSpec, Space, SpaceSpec, Step};
+use crate::grow::{Expected, MarkKind, MethodSpec, Space, SpaceSpec, Step};
 use crate::math::{Colour, DVec2, DVec3, Degrees, Ref, unknown};
 use crate::model::{
     CameraSpec, GlowSpec, GroundSpec, Instance, LeavesSpec, Light, LightSpec, Material, Mesh, PaintSpec, Painting,
@@ -129,6 +129,8 @@ pub(super) struct Resolver<'a> {
     pub folder: &'a Folder,
     tree: &'a Entry,
     mistakes: &'a mut Vec<Mistake>,
+    /// What steps are expected to grow, as far as it has been asked for.
+    pub expected: BTreeMap<String, Expected>,
 }
 
 /// Resolves `scene`; adds what is wrong with it.
@@ -140,7 +142,7 @@ pub(super) fn resolve(
 ) -> Option<Resolved> {
     let spec = scene.view.clone();
     let (view, size) = {
-        let mut r = Resolver { scene: &scene, folder: &source.folder, tree, mistakes };
+        let mut r = Resolver { scene: &scene, folder: &source.folder, tree, mistakes, expected: BTreeMap::new() };
         r.view(spec.as_ref(), scene.size)?
     };
     if let Some(view) = &view {
@@ -149,7 +151,7 @@ pub(super) fn resolve(
         }
     }
     let pixel = view.as_ref().map(|view| view.frame.pixel);
-    let mut r = Resolver { scene: &scene, folder: &source.folder, tree, mistakes };
+    let mut r = Resolver { scene: &scene, folder: &source.folder, tree, mistakes, expected: BTreeMap::new() };
     for (name, spec) in &scene.shape {
         let shape = spec.resolve(&scene.shape, &Names { folder: r.folder, scene: &scene });
         r.note(&format!("shape.{name}"), shape);
@@ -158,6 +160,7 @@ pub(super) fn resolve(
     let spaces: BTreeMap<&String, Option<Space>> =
         scene.space.iter().map(|(name, spec)| (name, r.space(name, spec))).collect();
     let steps: Vec<Option<Step>> = scene.grow.iter().map(|(name, spec)| r.step(name, spec, &spaces, pixel)).collect();
+    r.check_expected();
     r.circles(&steps);
     r.plants(&steps);
     if view.is_some() && !is_flat {

@@ -38,7 +38,7 @@ impl SkeletonNode {
 }
 
 /// The end of one path.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Path {
     /// The node at the endpoint.
     pub end: u32,
@@ -49,6 +49,8 @@ pub struct Path {
     /// What tells it from all other paths, whatever else grows: the random numbers of what grows on from its end depend on
     /// it.
     pub name: u64,
+    /// The way of the last branch of the limb that it carries on; zero where there is none.
+    pub last: [f32; 3],
 }
 
 /// The nodes of a path that no path before it has.
@@ -102,7 +104,7 @@ impl Skeleton {
             parent = Some(at);
         }
         let name = self.paths.len() as u64;
-        self.paths.extend(parent.map(|end| Path { end, class, root: 0, name }));
+        self.paths.extend(parent.map(|end| Path { end, class, root: 0, name, ..Path::default() }));
     }
 
     /// Gives every tree of the forest an age and a largest radius, told by `start` from its root.

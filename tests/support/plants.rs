@@ -3,16 +3,20 @@
 use lichtenberg::files::Folder;
 use lichtenberg::grow::Grown;
 use lichtenberg::math::{DVec3, Progress};
-use lichtenberg::scene::{Resolved, Source, grow, load};
+use lichtenberg::scene::{Resolved, SceneError, Source, grow, load};
 use lichtenberg::skeleton::Skeleton;
 
 pub fn scene(steps: &str) -> Resolved {
+    load_text(steps).unwrap_or_else(|error| panic!("{error}"))
+}
+
+pub fn load_text(steps: &str) -> Result<Resolved, SceneError> {
     let objects: Vec<&str> = steps.lines().filter_map(|line| line.strip_prefix("[grow.")?.strip_suffix(']')).collect();
     let object =
         format!("[object.all]\ngrow = {:?}\n", objects.iter().filter(|n| !n.contains('.')).collect::<Vec<_>>());
     let text = format!("title = \"Test\"\nseed = 7\n{steps}\n{object}");
     let source = Source { name: "test".to_owned(), text, folder: Folder::Disk(super::root()) };
-    load(&source, &[]).unwrap_or_else(|error| panic!("{error}"))
+    load(&source, &[])
 }
 
 pub fn grown(scene: &Resolved) -> Vec<Grown> {
