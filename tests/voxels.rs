@@ -116,7 +116,7 @@ fn growth_seeks_the_light() {
 fn branches_come_at_their_age() {
     let s = only(
         "[space.air]\nshape.box = { min = [-9, -9, 0], max = [9, 9, 18] }\nnodes.voxels = { side = 0.2 }\n\
-         [grow.plant]\nspace = \"air\"\nfrom.at = [[0, 0, 0.05]]\nwidth.constant = 0.01\nby.voxels = { step = 0.2, rounds = 40, apart = 0.01, straight = 1, branches = { age = [5, 9], angle = [40, 60] } }\n",
+         [grow.plant]\nspace = \"air\"\nfrom.at = [[0, 0, 0.05]]\nwidth.constant = 0.01\nby.voxels = { step = 0.2, rounds = 44, apart = 0.01, straight = 1, branches = { age = [5, 9], angle = [40, 60] } }\n",
     );
     let limbs = s.limbs();
     let mut places: Vec<Vec<usize>> = vec![Vec::new(); limbs.len()];
@@ -137,7 +137,7 @@ fn branches_come_at_their_age() {
             before = at;
         }
     }
-    assert!(gaps.len() > 30 && gaps.iter().all(|gap| (5..=9).contains(gap)), "{gaps:?}");
+    assert!(gaps.len() > 40 && gaps.iter().all(|gap| (5..=9).contains(gap)), "{gaps:?}");
     assert!((5..=9).all(|age| gaps.contains(&age)));
     assert!(angles.iter().all(|a| (40.0 - 1e-6..=60.0 + 1e-6).contains(a)));
 }

@@ -9,6 +9,8 @@ use crate::math::DVec3;
 const BITS: u32 = 3;
 /// Voxels of a block, and blocks of a tile.
 const CELLS: usize = 1 << (3 * BITS);
+/// How many voxels deep a solid is filled: rays that start beside it cannot step over that.
+const DEEP: f64 = 3.0;
 /// Rays go on by this share of a voxel past each border.
 const STEP: f64 = 1e-6;
 /// Parts of a direction that are less than this count as none.
@@ -167,8 +169,9 @@ impl Occupancy {
         self.low + DVec3::from_array(at.map(|c| f64::from(c) + half)) * self.side
     }
 
-    /// Takes up the voxels whose middles lie in `shape`, no deeper below its surface than `deep`.
-    pub fn insert_shape(&mut self, shape: &Shape, deep: f64) {
+    /// Takes up the voxels whose middles lie in `shape`, no deeper below its surface than a few voxels.
+    pub fn insert_shape(&mut self, shape: &Shape) {
+        let deep = DEEP * self.side;
         // Every voxel is asked for once: samples would be kept for nothing.
         let shape = &shape.unsampled();
         // Half the diagonal of a cell of the tree.
@@ -311,7 +314,7 @@ mod tests {
         let bounds = Bounds { min: DVec3::splat(-50.0), max: DVec3::splat(50.0) };
         let ball = Shape::new(Solid::Sphere { centre: DVec3::new(0.3, 0.1, -0.2), radius: 30.0 });
         let mut voxels = Occupancy::new(bounds, 0.5);
-        voxels.insert_shape(&ball, 1.5);
+        voxels.insert_shape(&ball);
         let mut count = 0;
         for i in 0..200 * 200 * 200_i32 {
             let p = bounds.min + DVec3::new((i % 200) as f64, (i / 200 % 200) as f64, (i / 40_000) as f64) * 0.5 + 0.25;

@@ -160,11 +160,13 @@ impl Automaton {
             if !(1..=pieces).all(|i| is_open(from + (at - from) * (f64::from(i) / f64::from(pieces)))) {
                 continue;
             }
-            // Relatives are not in the way, but they take room: so branches part.
-            let nearest = near.iter().map(|near| near.twig.distance(at, at)).fold(ROOM * self.apart, f64::min);
             let went = (at - from).normalize_or(tried);
             let mut score = self.straight * went.dot(way);
-            score += self.room * (nearest / (ROOM * self.apart).max(f64::MIN_POSITIVE));
+            if self.room > 0.0 {
+                // Relatives are not in the way, but they take room: so branches part.
+                let nearest = near.iter().map(|near| near.twig.distance(at, at)).fold(ROOM * self.apart, f64::min);
+                score += self.room * (nearest / (ROOM * self.apart).max(f64::MIN_POSITIVE));
+            }
             if let Some(Attractor { at: goal, strength }) = self.toward {
                 score += strength * went.dot((goal - at).normalize_or_zero());
             }
@@ -246,7 +248,7 @@ pub(super) fn grow_together(
     let pieces = before.iter().flat_map(|(_, s)| s.segments()).map(|(a, b)| a.position.distance(b.position));
     let longest = steps.chain(pieces).fold(0.0, f64::max);
     let voxels = space.voxels();
-    let solids = (most(&|own| own.foliage) > 0.0).then(|| voxels.clone());
+    let solids = (space.forbid.is_some() && most(&|own| own.foliage) > 0.0).then(|| voxels.clone());
     let others = Neighbourhood::new(asked + longest);
     let mut garden = Garden { space, plants, voxels, solids, others, tips: Vec::new(), apart };
     garden.sow(before, grown)?;

@@ -24,7 +24,7 @@ impl Step {
         if matches!(self.method, Method::Regions(_)) {
             return Ok(skeleton);
         }
-        let parts = self.symmetry.map_or(1, |symmetry| symmetry.parts());
+        let parts = self.parts();
         let nodes = self
             .strands
             .map_or(skeleton.nodes.len() as u64, |pieces| skeleton.paths.len() as u64 * (u64::from(pieces) + 1));

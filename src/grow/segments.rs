@@ -159,8 +159,7 @@ impl Growth {
     /// Adds a node with its bud, of a limb or of a new one.
     fn add(&mut self, made: Made, bud: Bud) {
         let limb = if made.limb == NEW {
-            let last = bud.last.to_array().map(|c| c as f32);
-            self.limbs.push(Path { root: bud.root, name: bud.name, last, ..Path::default() });
+            self.limbs.push(Path { root: bud.root, name: bud.name, last: bud.last, ..Path::default() });
             NEW + self.limbs.len() as u32 - 1
         } else {
             made.limb

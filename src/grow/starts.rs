@@ -2,7 +2,7 @@
 
 use super::{GrowError, Part, Source, Step};
 use crate::math::{DVec3, name_of};
-use crate::skeleton::{Path, Skeleton};
+use crate::skeleton::Skeleton;
 
 /// Where a limb starts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -84,8 +84,7 @@ impl Step {
 
 /// For each path the way of the last branch of its limb, or of the limb that this carries on; zero where it has none.
 fn last_branches(skeleton: &Skeleton) -> Vec<DVec3> {
-    let before = |path: &Path| (f64::NEG_INFINITY, DVec3::from_array(path.last.map(f64::from)));
-    let mut last: Vec<(f64, DVec3)> = skeleton.paths.iter().map(before).collect();
+    let mut last: Vec<(f64, DVec3)> = skeleton.paths.iter().map(|path| (f64::NEG_INFINITY, path.last)).collect();
     let at = |node: u32| skeleton.nodes[node as usize];
     for limb in skeleton.limbs() {
         let (Some((from, path)), Some(&first)) = (limb.leaves, limb.nodes.first()) else { continue };

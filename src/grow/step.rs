@@ -152,7 +152,7 @@ impl Step {
         let paths: u64 = self.endpoints.iter().map(|set| set.placement.count() as u64).sum();
         match &self.space {
             None => match &self.method {
-                Method::Segments(segments) => segments.bytes_needed(segments.starts),
+                Method::Segments(segments) => segments.bytes_needed(segments.starts) * u64::from(self.parts()),
                 _ => 0,
             },
             Some(Space::Voxels(space)) => {
@@ -194,7 +194,12 @@ impl Step {
             Source::At(points) => points.len(),
             Source::Inside(_) | Source::Spread(_) => 0,
         };
-        segments.bytes_needed(starts as f64)
+        segments.bytes_needed(starts as f64) * u64::from(self.parts())
+    }
+
+    /// How many times it is there, by its symmetry.
+    pub(super) fn parts(&self) -> u32 {
+        self.symmetry.map_or(1, |symmetry| symmetry.parts())
     }
 
     /// The steps that must have grown before, by index.

@@ -5,9 +5,6 @@ use crate::geom::{Occupancy, Shape};
 /// More voxels along an axis than this are refused.
 const MOST_ACROSS: f64 = 4096.0;
 
-/// How many voxels deep a solid is filled: rays that start beside it cannot step over that.
-const DEEP: f64 = 3.0;
-
 /// Voxels in a shape, with nothing stored where nothing is.
 #[derive(Clone, Debug)]
 pub struct VoxelSpace {
@@ -44,7 +41,7 @@ impl VoxelSpace {
     pub fn voxels(&self) -> Occupancy {
         let mut voxels = Occupancy::new(self.shape.bounds(), self.side);
         if let Some(forbid) = &self.forbid {
-            voxels.insert_shape(forbid, DEEP * self.side);
+            voxels.insert_shape(forbid);
         }
         voxels
     }

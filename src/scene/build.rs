@@ -102,11 +102,11 @@ pub fn grow(scene: &Resolved, show: &[MarkKind], max_memory: u64, progress: &Pro
             Step::grow_together(&steps, space, &before, scene.seed, &earlier, progress)
         };
         // Side by side where memory allows; the result is the same.
-        let needed = |&i: &usize| scene.steps[i].bytes_needed_from(&earlier);
-        if let Some(needed) = groups.iter().flatten().map(needed).find(|&needed| needed > max_memory) {
+        let needed: Vec<u64> = groups.iter().flatten().map(|&i| scene.steps[i].bytes_needed_from(&earlier)).collect();
+        if let Some(&needed) = needed.iter().find(|&&needed| needed > max_memory) {
             return Err(Stage::Memory { needed, limit: max_memory });
         }
-        let together: u64 = groups.iter().flatten().map(needed).sum();
+        let together: u64 = needed.iter().sum();
         let finished: Result<Vec<Vec<Grown>>, GrowError> = if together <= max_memory {
             groups.par_iter().map(grow).collect()
         } else {

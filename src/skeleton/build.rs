@@ -50,7 +50,7 @@ pub struct Path {
     /// it.
     pub name: u64,
     /// The way of the last branch of the limb that it carries on; zero where there is none.
-    pub last: [f32; 3],
+    pub last: DVec3,
 }
 
 /// The nodes of a path that no path before it has.

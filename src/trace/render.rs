@@ -121,11 +121,12 @@ fn trace_tiles(world: &World<'_>, view: &View, progress: &Progress) -> Result<(P
     let mut tiles: Vec<(u32, u32)> =
         (0..height.div_ceil(TILE)).flat_map(|y| (0..width.div_ceil(TILE)).map(move |x| (x, y))).collect();
     tiles.sort_by_key(|&(x, y)| morton(x) | morton(y) << 1);
+    // By the object of a sample: nothing, the objects, the ground.
     let is_even: Vec<bool> = std::iter::once(false)
         .chain(world.model.objects.iter().map(|o| world.model.materials[o.material].1.pattern.is_none()))
         .chain(std::iter::once(true))
         .collect();
-    let face = |s: &Sample| Face { object: s.object, normal: s.normal };
+    let face = |s: &Sample| Face::new(s.object, s.normal);
     let done = AtomicUsize::new(0);
     let traced: Vec<Tile> = tiles
         .par_iter()
@@ -138,7 +139,7 @@ fn trace_tiles(world: &World<'_>, view: &View, progress: &Progress) -> Result<(P
                 sample(world, view, &eye, left + x, top + y, &mut samples);
                 tile.pixels.push(mean(&samples));
                 let one = Face::of_all(samples.iter().map(face));
-                tile.faces.push(one.filter(|face| is_even[face.object as usize]));
+                tile.faces.push(one.filter(|_| is_even[samples[0].object as usize]));
                 if view.data {
                     tile.data.push(data(&samples));
                 }
