@@ -12,16 +12,20 @@
 //! | [`math`] | random streams, names, the progress handle |
 //! | [`raster`], [`geom`] | picture buffers; shapes, strokes, round cones |
 //! | [`bvh`] | what rays hit |
-//! | [`graph`] | lattices whose weights are computed, not stored |
+//! | [`model`] | the neutral description that renderers and exporters read: a [`model::Model`] |
+//! | [`graph`] | lattices whose weights are computed, not stored; scattered nodes |
 //! | [`plan`](mod@plan) | least-cost paths: a [`plan::Plan`] |
 //! | [`skeleton`] | the forest of paths, with radii: a [`skeleton::Skeleton`] |
 //! | [`grow`] | the steps of a scene: a [`grow::Grown`] each |
-//! | [`model`] | what renderers and exporters read: a [`model::Model`] |
+//! | [`skin`] | bodies around skeletons, and what stands on them |
+//! | [`assemble`] | the way from a [`assemble::Recipe`] to a model |
 //! | [`export`] | POV-Ray, RIB, SVG, OBJ and PLY |
 //! | [`trace`] | the preview: a [`trace::Picture`] |
+//! | [`glow`] | the light of strokes, in layers |
 //! | [`compare`] | how far pictures are apart, and reports |
 //! | [`files`] | pictures and sketches in and out; whole files or none |
-//! | [`scene`] | scenes with every mistake reported |
+//! | [`picture`] | finished pictures as pixels, layers, passes and mattes |
+//! | [`scene`] | scenes from TOML to a recipe, with every mistake reported |
 //! | [`render`] | driving POV-Ray, Pixie and Aqsis |
 //!
 //! A stage imports earlier ones only; a test holds it to that.
@@ -42,9 +46,9 @@
 //! let grown = grow(&scene, &[], 1 << 30, &Progress::default())?;
 //! assert_eq!(grown[0].skeleton.paths.len(), 38);
 //!
-//! let model = model(&scene, &grown, scene.size)?;
+//! let model = model(&scene, &grown, scene.recipe.size, &Progress::default())?;
 //! let mut inc = Vec::new();
-//! Pov::new(&model, &Templates::default(), "elm", scene.size, &Origin::default()).write_inc(&mut inc)?;
+//! Pov::new(&model, &Templates::default(), "elm", scene.recipe.size, &Origin::default()).write_inc(&mut inc)?;
 //! assert!(String::from_utf8(inc)?.contains("#declare Elm_Height"));
 //!
 //! let view = View::new([64, 64], Look::Studio, 4);
@@ -57,6 +61,7 @@
 //! planning for natural phenomena modeling*) and 2012, and Amin's Growth module after Greene's voxel space automata;
 //! equations and figures are cited where they are used.
 
+pub mod assemble;
 pub mod bvh;
 #[cfg(feature = "cli")]
 pub mod cli;
@@ -69,9 +74,11 @@ pub mod graph;
 pub mod grow;
 pub mod math;
 pub mod model;
+pub mod picture;
 pub mod plan;
 pub mod raster;
 pub mod render;
 pub mod scene;
 pub mod skeleton;
+pub mod skin;
 pub mod trace;

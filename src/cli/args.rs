@@ -7,7 +7,7 @@ use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
 use super::place::{Place, parse_place};
 use crate::compare::Metric;
-use crate::grow::MarkKind;
+use crate::geom::MarkKind;
 use crate::scene::Override;
 
 /// Grows branching natural things by least-cost paths through randomly weighted graphs, and hands them to renderers.
@@ -365,6 +365,17 @@ pub enum Renderer {
     Pixie,
     /// Aqsis (`aqsis`), which must be installed
     Aqsis,
+}
+
+impl Renderer {
+    /// What metadata call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Povray => "povray",
+            Self::Pixie => "pixie",
+            Self::Aqsis => "aqsis",
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

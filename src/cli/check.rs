@@ -4,6 +4,7 @@ use super::args::CheckArgs;
 use super::console::Console;
 use super::error::Failure;
 use super::jobs::Jobs;
+use crate::assemble::AssembleError;
 use crate::scene::{Stage, check_claims};
 
 pub fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
@@ -23,7 +24,7 @@ pub fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
         };
         let needed = scene.bytes_needed();
         if needed > jobs.max_memory() {
-            return Err(Stage::Memory { needed, limit: jobs.max_memory() }.into());
+            return Err(Stage::Memory(AssembleError::Memory { needed, limit: jobs.max_memory() }).into());
         }
         if !args.claims {
             if console.json {

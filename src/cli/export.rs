@@ -7,10 +7,11 @@ use super::console::Console;
 use super::error::Failure;
 use super::jobs::Jobs;
 use super::render::check_name;
-use super::write::{Written, read_templates, write_pov, write_rib};
+use super::write::{Written, note_patterns, read_templates, write_pov, write_rib};
 use crate::export::{Pov, Rib, RibOptions, RibShadows, SvgOptions, write_obj, write_ply, write_svg};
 use crate::files::write_whole;
-use crate::grow::MarkKind;
+use crate::geom::MarkKind;
+use crate::model::Object;
 
 pub fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
     let jobs = Jobs::new(&args.scene, console)?;
@@ -41,7 +42,7 @@ pub fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
         let model = jobs.model(&scene, &show, console, &progress)?;
         let written = match args.to {
             Format::Svg => {
-                write_whole(&first, |out| write_svg(&model, SvgOptions { size: scene.size }, out))
+                write_whole(&first, |out| write_svg(&model, SvgOptions { size: scene.recipe.size }, out))
                     .map_err(|e| Failure::file("write", &first, &e))?;
                 vec![first]
             }
@@ -56,30 +57,37 @@ pub fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
                 vec![first]
             }
             Format::Pov => {
-                let pov = Pov::new(&model, &templates, name, scene.size, &job.origin(scene.seed, "export"));
+                let pov =
+                    Pov::new(&model, &templates, name, scene.recipe.size, &job.origin(scene.recipe.seed, "export"));
                 told(write_pov(&pov, folder, name, args.force)?, console)
             }
             Format::Rib => {
-                let origin = job.origin(scene.seed, "export");
+                let origin = job.origin(scene.recipe.seed, "export");
                 let shadows = args.shadows.map_or(RibShadows::None, Shadows::of);
                 let options = RibOptions { shadows, displace: args.displace };
-                if args.displace && model.objects.iter().any(|o| o.thorns.is_some_and(|thorns| thorns.lean > 0.0)) {
+                if args.displace && model.objects.iter().any(leans) {
                     console.note("note: displaced thorns stand upright: only those that are cones `lean`");
                 }
-                let rib = Rib::new(&model, &templates, name, scene.size, &origin, options);
+                let rib = Rib::new(&model, &templates, name, scene.recipe.size, &origin, options);
+                note_patterns(&rib, console);
                 told(write_rib(&rib, folder, name, args.gzip, args.force)?, console)
             }
         };
         console.done();
         for path in written {
             if console.json {
-                console.result(&serde_json::json!({ "file": path, "scene": job.name(), "seed": scene.seed }));
+                console.result(&serde_json::json!({ "file": path, "scene": job.name(), "seed": scene.recipe.seed }));
             } else {
                 console.line(&path.display().to_string());
             }
         }
     }
     Ok(())
+}
+
+/// Do its thorns lean?
+fn leans(object: &Object) -> bool {
+    object.body.limbs().and_then(|limbs| limbs.thorns).is_some_and(|thorns| thorns.lean > 0.0)
 }
 
 /// The files written; tells of those that were left alone.

@@ -43,10 +43,10 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
         let grown = jobs.grow(&scene, &[], console, &progress)?;
         console.done();
         lap("grow");
-        let model = scene::model(&scene, &grown, scene.size)?;
+        let model = scene::model(&scene, &grown, scene.recipe.size, &progress)?;
         lap("model");
         let mut count = Count::default();
-        Pov::new(&model, &Templates::default(), "scene", scene.size, &job.origin(scene.seed, "info"))
+        Pov::new(&model, &Templates::default(), "scene", scene.recipe.size, &job.origin(scene.recipe.seed, "info"))
             .write_inc(&mut count)
             .map_err(|e| Failure::Usage(e.to_string()))?;
         lap("export");
@@ -67,8 +67,8 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
             .collect();
         let all = json!({
             "scene": job.name(),
-            "title": scene.title,
-            "seed": scene.seed,
+            "title": scene.recipe.title,
+            "seed": scene.recipe.seed,
             "nodes": grown.iter().map(|s| s.nodes).sum::<u64>(),
             "edges": grown.iter().map(|s| s.edges).sum::<u64>(),
             "endpoints": grown.iter().map(|s| s.skeleton.paths.len()).sum::<usize>(),
@@ -82,7 +82,7 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
             console.result(&all);
             continue;
         }
-        console.line(&format!("{}: {} (seed {})", job.name(), scene.title, scene.seed));
+        console.line(&format!("{}: {} (seed {})", job.name(), scene.recipe.title, scene.recipe.seed));
         for step in &grown {
             let m = measure_from(&step.skeleton, step.foot);
             console.line(&format!(

@@ -9,10 +9,11 @@ use super::error::Failure;
 use super::memory;
 use crate::export::Origin;
 use crate::files::{Folder, embedded_scenes};
-use crate::grow::{Grown, MarkKind};
+use crate::geom::MarkKind;
+use crate::grow::Grown;
 use crate::math::{Progress, unknown};
 use crate::model::Model;
-use crate::scene::{self, Override, Resolved, Source};
+use crate::scene::{self, Loaded, Override, Source};
 
 /// More pictures than this in one call are a slip of the hand.
 const MOST_JOBS: usize = 100_000;
@@ -161,7 +162,7 @@ impl Jobs {
     }
 
     /// Reads the scene of `job`; its size is the call's or the scene's own.
-    pub fn load(&self, job: &Job) -> Result<Resolved, Failure> {
+    pub fn load(&self, job: &Job) -> Result<Loaded, Failure> {
         let size = self.size.map(|[w, h]| Override { path: "size".to_owned(), value: format!("[{w}, {h}]") });
         let overrides: Vec<Override> = job.overrides.iter().cloned().chain(size).collect();
         Ok(scene::load_frame(&job.source, &overrides, job.frame.map(f64::from))?)
@@ -170,7 +171,7 @@ impl Jobs {
     /// Grows a scene.
     pub fn grow(
         &self,
-        scene: &Resolved,
+        scene: &Loaded,
         show: &[MarkKind],
         console: &Console,
         progress: &Progress,
@@ -188,13 +189,13 @@ impl Jobs {
     /// The whole way from a job to its model.
     pub fn model(
         &self,
-        scene: &Resolved,
+        scene: &Loaded,
         show: &[MarkKind],
         console: &Console,
         progress: &Progress,
     ) -> Result<Model, Failure> {
         let grown = self.grow(scene, show, console, progress)?;
-        Ok(scene::model(scene, &grown, scene.size)?)
+        Ok(scene::model(scene, &grown, scene.recipe.size, progress)?)
     }
 
     /// May a scene take this much memory?

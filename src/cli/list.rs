@@ -10,7 +10,7 @@ pub fn run(console: &Console) -> Result<(), Failure> {
     let width = scenes.iter().map(|(name, ..)| name.len()).max().unwrap_or(0);
     for (name, text, folder) in scenes {
         let source = Source { name: name.clone(), text: text.to_owned(), folder };
-        let title = load(&source, &[])?.title;
+        let title = load(&source, &[])?.recipe.title;
         if console.json {
             console.result(&serde_json::json!({ "name": name, "title": title }));
         } else {

@@ -1,19 +1,17 @@
 //! Pictures on their way to files: traced, by an outside renderer, or drawn.
 
-use std::io::{self, Cursor, Write};
-use std::path::Path;
+use std::io;
+use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
-
-use super::args::{Look, RenderArgs};
+use super::args::{Look, RenderArgs, Renderer};
 use super::error::Failure;
-use super::shone::{Shone, Writing};
-use crate::files::{Rgba, add_mattes, encode_exr, encode_png, encode_png16, write_whole};
-use crate::math::{Progress, srgb_byte, to_srgb};
-use crate::model::Model;
-use crate::raster::{Layers, filmic};
-use crate::scene::Resolved;
-use crate::trace::{self, Picture, View, World};
+use crate::files::{Rgba, encode_png, write_whole};
+use crate::glow::ShineError;
+use crate::math::Progress;
+use crate::model::{Model, Stroke};
+use crate::picture::{self, Depth, Shone, ShoneError, Traced};
+use crate::scene::Loaded;
+use crate::trace::{self, View};
 
 /// Samples a pixel where none are asked for, in the studio and the exact look.
 const SAMPLES: [u32; 2] = [8, 9];
@@ -28,14 +26,6 @@ pub enum Drawn {
     Shone(Shone),
     /// As a screen shows it.
     Screen(Rgba),
-}
-
-/// A traced picture.
-pub struct Traced {
-    picture: Picture,
-    is_filmic: bool,
-    objects: Vec<String>,
-    branches: Vec<String>,
 }
 
 /// The look as the tracer calls it.
@@ -75,13 +65,56 @@ pub fn view(args: &RenderArgs, size: [u32; 2], data: bool, max_memory: u64) -> R
 
 /// Traces `view` of `model`.
 pub fn trace(model: &Model, view: &View, progress: &Progress) -> Result<Drawn, Failure> {
-    let world = World::new(model);
-    let picture = trace::render(&world, view, progress).map_err(|_| Failure::Stopped)?;
-    let mut objects: Vec<String> = model.objects.iter().map(|o| o.name.clone()).collect();
-    objects.push("ground".to_owned());
-    // A drawing's white is white.
-    let is_filmic = view.look == trace::Look::Studio && !model.is_flat;
-    Ok(Drawn::Traced(Traced { picture, is_filmic, objects, branches: world.branch_names() }))
+    picture::trace(model, view, progress).map(Drawn::Traced).map_err(|_| Failure::Stopped)
+}
+
+/// The light of `strokes` over the photograph of `scene`, or over black.
+pub fn shine(scene: &Loaded, strokes: &[Stroke], max_memory: u64, progress: &Progress) -> Result<Shone, Failure> {
+    let recipe = &scene.recipe;
+    let Some(backdrop) = &recipe.view else {
+        return Err(Failure::Usage(format!("{} has no [view]: only such scenes shine", recipe.title)));
+    };
+    let shone = Shone::new(backdrop, recipe.size, strokes, recipe.seed, max_memory, progress);
+    shone.map_err(|error| match error {
+        ShoneError::Shine(ShineError::Cancelled(_)) => Failure::Stopped,
+        ShoneError::Shine(ShineError::Scene { object, message }) => {
+            Failure::Scene(scene.error(&format!("object.{object}.glow.near.grain"), message))
+        }
+        ShoneError::Memory { .. } => Failure::Usage(error.to_string()),
+    })
+}
+
+/// Writes `shone` to `path`, as its ending says, in a file a pass where `split`; returns the files.
+pub fn write_shone(
+    shone: &Shone,
+    path: &Path,
+    depth: Depth,
+    split: bool,
+    texts: &[(&str, &str)],
+) -> Result<Vec<PathBuf>, Failure> {
+    if !is_exr(path) {
+        if split {
+            return Err(Failure::Usage("--split writes OpenEXR: end the picture in .exr".to_owned()));
+        }
+        write_whole(path, |out| shone.write_png(depth, texts, out)).map_err(|e| Failure::file("write", path, &e))?;
+        return Ok(vec![path.to_owned()]);
+    }
+    if !split {
+        write_whole(path, |out| shone.write_exr(texts, out)).map_err(|e| Failure::file("write", path, &e))?;
+        return Ok(vec![path.to_owned()]);
+    }
+    let mut files = Vec::new();
+    for pass in shone.passes() {
+        let file = path.with_extension(format!("{}.exr", pass.name()));
+        write_whole(&file, |out| shone.write_pass(pass, texts, out)).map_err(|e| Failure::file("write", &file, &e))?;
+        files.push(file);
+    }
+    Ok(files)
+}
+
+/// Bits of a channel as the command line has them.
+pub fn depth(bits: &str) -> Depth {
+    if bits == "16" { Depth::Sixteen } else { Depth::Eight }
 }
 
 impl Drawn {
@@ -90,48 +123,30 @@ impl Drawn {
         match self {
             Self::Screen(picture) => picture.clone(),
             Self::Shone(shone) => shone.to_screen(),
-            Self::Traced(traced) => Rgba {
-                width: traced.picture.width,
-                height: traced.picture.height,
-                bytes: traced.encoded(srgb_byte, |alpha| libm::floor(alpha * 255.0 + 0.5) as u8),
-            },
+            Self::Traced(traced) => traced.to_screen(),
         }
     }
 
     /// Writes it to `path`, as its ending says, with what shaped it.
-    pub fn write(&self, path: &Path, args: &RenderArgs, scene: &Resolved) -> Result<(), Failure> {
+    pub fn write(&self, path: &Path, args: &RenderArgs, scene: &Loaded) -> Result<(), Failure> {
         let software = format!("lichtenberg {}", env!("CARGO_PKG_VERSION"));
         let document = scene.document().to_string();
         let how = how(args, scene).to_string();
         let texts = [
-            ("Title", scene.title.as_str()),
+            ("Title", scene.recipe.title.as_str()),
             ("Software", software.as_str()),
             ("Scene", document.as_str()),
             ("View", how.as_str()),
         ];
         if let Self::Shone(shone) = self {
-            return shone.write(path, Writing { is_deep: args.bits == "16", split: false }, &texts).map(drop);
+            return write_shone(shone, path, depth(&args.bits), false, &texts).map(drop);
         }
         write_whole(path, |out| match self {
-            Self::Traced(traced) if is_exr(path) => {
-                let mut layers = traced.layers();
-                for (keyword, text) in texts {
-                    // Standard attributes where there are any.
-                    let keyword = if keyword == "Software" { "software" } else { keyword };
-                    layers.texts.push((keyword.to_owned(), text.to_owned()));
-                }
-                let mut bytes = Cursor::new(Vec::new());
-                encode_exr(&layers, &mut bytes)?;
-                out.write_all(bytes.get_ref())
-            }
+            Self::Traced(traced) if is_exr(path) => traced.write_exr(&texts, out),
             Self::Screen(_) if is_exr(path) => {
                 Err(io::Error::other("only the built-in preview writes OpenEXR: leave out --with, or end it in .png"))
             }
-            Self::Traced(traced) if args.bits == "16" => {
-                let round = |x: f64| libm::floor(x * 65535.0 + 0.5) as u16;
-                let values = traced.encoded(|linear| round(to_srgb(linear)), round);
-                encode_png16([traced.picture.width, traced.picture.height], &values, &texts, out)
-            }
+            Self::Traced(traced) if args.bits == "16" => traced.write_png16(&texts, out),
             _ => encode_png(&self.to_screen(), &texts, out),
         })
         .map_err(|e| Failure::file("write", path, &e))
@@ -144,47 +159,19 @@ pub fn is_exr(path: &Path) -> bool {
 }
 
 /// What shapes a picture besides its scene.
-fn how(args: &RenderArgs, scene: &Resolved) -> serde_json::Value {
-    if scene.view.is_some() && args.with.is_none() && !args.schematic {
-        return serde_json::json!({ "renderer": "glow", "size": scene.size });
+fn how(args: &RenderArgs, scene: &Loaded) -> serde_json::Value {
+    if scene.recipe.view.is_some() && args.with.is_none() && !args.schematic {
+        return serde_json::json!({ "renderer": "glow", "size": scene.recipe.size });
     }
     if args.schematic {
-        return serde_json::json!({ "renderer": "schematic", "size": scene.size });
+        return serde_json::json!({ "renderer": "schematic", "size": scene.recipe.size });
     }
     serde_json::json!({
-        "renderer": if args.with.is_some() { "povray" } else { "preview" },
-        "size": scene.size,
+        "renderer": args.with.map_or("preview", Renderer::name),
+        "size": scene.recipe.size,
         "crop": args.crop,
         "look": if args.look == Look::Studio { "studio" } else { "exact" },
         "samples": samples(args),
         "transparent": args.transparent,
     })
-}
-
-impl Traced {
-    /// Red, green, blue by `encode` and alpha by `round`, not premultiplied.
-    fn encoded<T: Copy + Send>(&self, encode: impl Fn(f64) -> T + Sync, round: impl Fn(f64) -> T + Sync) -> Vec<T> {
-        let pixel = |p: &[f32; 4]| {
-            let alpha = f64::from(p[3]);
-            let show = |c: f32| {
-                let linear = if alpha > 0.0 { f64::from(c) / alpha } else { 0.0 };
-                encode(if self.is_filmic { filmic(linear) } else { linear })
-            };
-            [show(p[0]), show(p[1]), show(p[2]), round(alpha)]
-        };
-        let pixels: Vec<[T; 4]> = self.picture.pixels.par_iter().map(pixel).collect();
-        pixels.into_flattened()
-    }
-
-    /// Every channel, with mattes of objects and limbs.
-    fn layers(&self) -> Layers {
-        let mut layers = self.picture.layers();
-        if !self.picture.data.is_empty() {
-            let objects: Vec<_> = self.picture.data.iter().map(|d| d.objects).collect();
-            let branches: Vec<_> = self.picture.data.iter().map(|d| d.branches).collect();
-            add_mattes(&mut layers, "CryptoObject", &self.objects, &objects);
-            add_mattes(&mut layers, "CryptoBranch", &self.branches, &branches);
-        }
-        layers
-    }
 }

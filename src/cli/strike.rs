@@ -13,15 +13,15 @@ use super::error::Failure;
 use super::jobs::find_scene;
 use super::memory;
 use super::place::{Place, Table, parse_place};
-use super::preview::is_exr;
+use super::preview::{depth, is_exr, shine, write_shone};
 use super::sheet::{Tile, write_sheet};
-use super::shone::{Shone, Writing};
 use crate::files::{ACESCG, Folder, REC709, decode_grey, decode_plate, set_chromaticities};
 use crate::grow::Placement;
 use crate::math::{DVec2, Stream};
 use crate::model::BEYOND;
+use crate::picture::Shone;
 use crate::raster::{Grey, Plate, Samples};
-use crate::scene::{self, Override, Resolved, Source};
+use crate::scene::{self, Loaded, Override, Source};
 
 /// No photograph has more bytes than this.
 const MOST_BYTES: u64 = 2 << 30;
@@ -79,7 +79,7 @@ pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
             // Frame 1 of the scene's animation is the strike.
             let frame = shot.frame.map(|frame| f64::from(frame) - f64::from(struck_at) + 1.0);
             let mut resolved = load(args, &source, &plate, &targets, seed, frame)?;
-            let Some(view) = &mut resolved.view else {
+            let Some(view) = &mut resolved.recipe.view else {
                 return Err(Failure::Usage(format!(
                     "{} has no [view]: only such scenes strike photographs",
                     source.name
@@ -90,19 +90,18 @@ pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
             let progress = console.progress(&label);
             let max_memory = args.max_memory.unwrap_or_else(memory::default_limit);
             let grown = scene::grow(&resolved, &[], max_memory, &progress)?;
-            let mut strokes = scene::model(&resolved, &grown, resolved.size)?.strokes;
+            let mut strokes = scene::model(&resolved, &grown, resolved.recipe.size, &progress)?.strokes;
             let told = match (&intensity, shot.frame) {
                 (Some(table), Some(frame)) => table.at(f64::from(frame), |a, b, t| a + (b - a) * t),
                 _ => 1.0,
             };
-            let extent = resolved.view.as_ref().map_or([1.0; 2], |view| view.frame.extent);
+            let extent = resolved.recipe.view.as_ref().map_or([1.0; 2], |view| view.frame.extent);
             for stroke in &mut strokes {
                 stroke.shift(DVec2::new(shift[0] * extent[0], shift[1] * extent[1]));
                 stroke.glow.intensity *= told;
                 stroke.glow.exposure = args.exposure.unwrap_or(stroke.glow.exposure);
             }
-            let Some(view) = &resolved.view else { continue };
-            let shone = Shone::new(&resolved, view, &strokes, max_memory, &progress)?;
+            let shone = shine(&resolved, &strokes, max_memory, &progress)?;
             write(args, &shone, &resolved, shot, seed, begun, console)?;
             if args.sheet.is_some() {
                 tiles.push(Tile { picture: shone.to_screen(), label });
@@ -120,7 +119,7 @@ pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
 fn write(
     args: &StrikeArgs,
     shone: &Shone,
-    scene: &Resolved,
+    scene: &Loaded,
     shot: &Shot,
     seed: Option<u64>,
     begun: Instant,
@@ -128,18 +127,17 @@ fn write(
 ) -> Result<(), Failure> {
     let software = format!("lichtenberg {}", env!("CARGO_PKG_VERSION"));
     let document = scene.document().to_string();
-    let texts = [("Title", scene.title.as_str()), ("Software", &software), ("Scene", &document)];
-    let how = Writing { is_deep: args.bits == "16", split: args.split };
+    let texts = [("Title", scene.recipe.title.as_str()), ("Software", &software), ("Scene", &document)];
     for output in &shot.outputs {
-        let name = output.to_string_lossy().replace("{seed}", &scene.seed.to_string());
+        let name = output.to_string_lossy().replace("{seed}", &scene.recipe.seed.to_string());
         let path = PathBuf::from(name);
-        for file in shone.write(&path, how, &texts)? {
+        for file in write_shone(shone, &path, depth(&args.bits), args.split, &texts)? {
             if console.json {
                 console.result(&serde_json::json!({
                     "file": file,
-                    "seed": seed.unwrap_or(scene.seed),
+                    "seed": seed.unwrap_or(scene.recipe.seed),
                     "frame": shot.frame,
-                    "size": scene.size,
+                    "size": scene.recipe.size,
                     "seconds": begun.elapsed().as_secs_f64(),
                 }));
             } else {
@@ -214,18 +212,18 @@ fn load(
     targets: &[[f64; 2]],
     seed: Option<u64>,
     frame: Option<f64>,
-) -> Result<Resolved, Failure> {
+) -> Result<Loaded, Failure> {
     let [width, height] = plate.frame();
     let mut overrides = args.set.clone();
     overrides.push(Override { path: "size".to_owned(), value: format!("[{width}, {height}]") });
     overrides.extend(seed.map(|seed| Override { path: "seed".to_owned(), value: seed.to_string() }));
     // What the scene is without the places, for its seed and its unit.
     let plain = scene::load_frame(source, &overrides, frame)?;
-    let Some(view) = &plain.view else {
+    let Some(view) = &plain.recipe.view else {
         return Err(Failure::Usage(format!("{} has no [view]: only such scenes strike photographs", source.name)));
     };
     let extent = view.frame.extent;
-    let bolt = plain.steps.iter().find(|step| step.name == "bolt");
+    let bolt = plain.recipe.steps.iter().find(|step| step.name == "bolt");
     if bolt.is_none_or(|bolt| bolt.endpoints.iter().all(|set| set.name != "target")) {
         return Err(Failure::Usage(format!(
             "{} has no step `bolt` with endpoints `target`: that is what is laid over a photograph",
@@ -249,7 +247,7 @@ fn load(
     }
     let from: Vec<[f64; 2]> = if args.from.is_empty() {
         // From the top edge, a little to one side or the other.
-        let mut random = Stream::new(plain.seed, "strike/from");
+        let mut random = Stream::new(plain.recipe.seed, "strike/from");
         targets
             .iter()
             .map(|target| {
@@ -281,10 +279,12 @@ fn load(
     let mut scene = scene::load_frame(source, &overrides, frame)?;
     // Side branches are those of a stroke as long as the picture is high; a shorter one has fewer and shorter ones.
     let share = length.min(1.0);
-    for near in scene.steps.iter_mut().flat_map(|step| &mut step.endpoints).filter_map(|set| match &mut set.placement {
-        Placement::Near(near) => Some(near),
-        Placement::At(_) | Placement::Through(_) | Placement::Random { .. } => None,
-    }) {
+    for near in
+        scene.recipe.steps.iter_mut().flat_map(|step| &mut step.endpoints).filter_map(|set| match &mut set.placement {
+            Placement::Near(near) => Some(near),
+            Placement::At(_) | Placement::Through(_) | Placement::Random(_) => None,
+        })
+    {
         near.count = (libm::round(f64::from(near.count) * libm::sqrt(share)) as u32).max(1);
         near.reach *= share;
     }

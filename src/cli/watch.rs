@@ -10,10 +10,10 @@ use notify::{RecursiveMode, Watcher};
 
 use super::args::{RenderArgs, Show};
 use super::console::Console;
+use super::draw::{draw, report};
 use super::error::Failure;
 use super::jobs::Jobs;
 use super::preview::{Drawn, is_exr, trace, view};
-use super::render::{draw, report};
 use super::terminal;
 use crate::math::Progress;
 use crate::trace::View;
@@ -132,10 +132,10 @@ fn once(
         report(output, job, &scene, begun, console);
         Ok(())
     };
-    if args.with.is_some() || args.schematic || scene.view.is_some() {
+    if args.with.is_some() || args.schematic || scene.recipe.view.is_some() {
         return finish(draw(args, &jobs, job, &scene, false, threads, console, progress)?);
     }
-    let fine = view(args, scene.size, is_exr(output), jobs.max_memory())?;
+    let fine = view(args, scene.recipe.size, is_exr(output), jobs.max_memory())?;
     let model = jobs.model(&scene, &[], console, progress)?;
     let less = |x: u32| (x / COARSE).max(1);
     let size = fine.size.map(less);

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use flate2::{Compression, GzBuilder};
 
+use super::console::Console;
 use super::error::Failure;
 use crate::export::{Pov, Rib, Templates};
 use crate::files::{encode_exr, is_edited, seal, write_bytes, write_whole};
@@ -128,5 +129,12 @@ fn failure(path: &Path, error: std::io::Error) -> Failure {
         // The template's own error says which it is.
         std::io::ErrorKind::InvalidData => Failure::Usage(error.to_string()),
         _ => Failure::file("write", path, &error),
+    }
+}
+
+/// Tells of patterns that RIB does not show.
+pub fn note_patterns(rib: &Rib<'_>, console: &Console) {
+    for material in rib.plain_patterns() {
+        console.note(&format!("note: RIB shows the pattern of `{material}` as its mean colour"));
     }
 }

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use super::decimal::plain_number;
 use super::identifier::plain;
 use crate::math::DVec3;
-use crate::model::{Digits, Model, Object};
+use crate::model::{Digits, Mesh, Model, Object};
 
 /// Why a model is no mesh.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -29,27 +29,28 @@ type Named<'a> = (&'a str, Digits, Vec<Face>);
 
 /// All faces of each object, wherever it stands.
 fn objects(model: &Model) -> Result<Vec<Named<'_>>, NoMesh> {
-    let faces = |o: &Object| o.mesh.triangles.len() * o.poses.len().max(1) * o.instances.len();
-    let count: usize = model.objects.iter().map(faces).sum();
+    let mut meshes = Vec::new();
+    for object in &model.objects {
+        let (mesh, poses) = object.body.mesh().ok_or_else(|| NoMesh::Cones(object.name.clone()))?;
+        meshes.push((object, mesh, poses));
+    }
+    let faces =
+        |(object, mesh, poses): &(&Object, &Mesh, Vec<_>)| mesh.triangles.len() * poses.len() * object.instances.len();
+    let count: usize = meshes.iter().map(faces).sum();
     if count > MOST_FACES {
         return Err(NoMesh::TooMany(count));
     }
     let mut all = Vec::new();
-    for object in &model.objects {
-        if !object.balls.is_empty() {
-            return Err(NoMesh::Cones(object.name.clone()));
-        }
-        let posed = object.poses.iter().map(|pose| Some(*pose));
-        let poses: Vec<_> = if object.poses.is_empty() { vec![None] } else { posed.collect() };
+    for (object, mesh, poses) in meshes {
         let mut faces: Vec<Face> = Vec::new();
         for place in &object.instances {
             for pose in &poses {
-                for (i, triangle) in object.mesh.triangles.iter().enumerate() {
+                for (i, triangle) in mesh.triangles.iter().enumerate() {
                     let corners = triangle.map(|corner| {
-                        let p = object.mesh.points[corner as usize];
+                        let p = mesh.points[corner as usize];
                         place.to_world(pose.map_or(p, |pose| pose.to_object(p)))
                     });
-                    faces.push((corners, object.mesh.uvs.get(i).copied()));
+                    faces.push((corners, mesh.uvs.get(i).copied()));
                 }
             }
         }

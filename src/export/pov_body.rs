@@ -4,10 +4,10 @@ use std::io::{self, Write};
 
 use super::buffer::{BUFFER, flush_at};
 use super::decimal::{number, push_number, push_vector, vector};
-use super::pov::to_pov;
+use super::pov_text::to_pov;
 use crate::geom::frustum;
 use crate::math::DVec3;
-use crate::model::{Digits, Frame, Mesh, Object, Pattern, Pose, limb_frames};
+use crate::model::{Body, Digits, LimbFrame, Limbs, Mesh, Object, Pattern, Pose, limb_frames};
 
 /// Writes what `object` is made of. Where its material has a pattern, limbs that are thick enough to show it have
 /// `texture`, laid along them. `one` is what its mesh is declared as, where that has poses.
@@ -18,17 +18,30 @@ pub(super) fn write_body(
     one: &str,
     out: &mut impl Write,
 ) -> io::Result<()> {
-    let frames = pattern.map(|pattern| (limb_frames(object), pattern.least_radius()));
+    match &object.body {
+        Body::Limbs(limbs) => write_limbs(limbs, object.digits, pattern, texture, out),
+        Body::Mesh(mesh) => write_mesh(mesh, object.digits, out),
+        Body::Posed(_, poses) => write_poses(poses, object.digits, one, out),
+    }
+}
+
+fn write_limbs(
+    limbs: &Limbs,
+    digits: Digits,
+    pattern: Option<&Pattern>,
+    texture: &str,
+    out: &mut impl Write,
+) -> io::Result<()> {
+    let frames = pattern.map(|pattern| (limb_frames(limbs), pattern.figure().least_radius()));
     let laid = |ball: u32| match &frames {
-        Some((frames, least)) if object.balls[ball as usize].radius >= *least => {
-            format!(" texture{{{texture} {}}}", matrix(&frames[ball as usize], object.digits))
+        Some((frames, least)) if limbs.balls[ball as usize].radius >= *least => {
+            format!(" texture{{{texture} {}}}", matrix(&frames[ball as usize], digits))
         }
         _ => String::new(),
     };
-    let digits = object.digits;
     let scale = digits.scale();
     let mut text = Vec::with_capacity(BUFFER + 256);
-    for (i, ball) in (0..).zip(&object.balls) {
+    for (i, ball) in (0..).zip(&limbs.balls) {
         text.extend_from_slice(b"sphere{");
         push_vector(&mut text, to_pov(ball.centre), digits, scale);
         text.push(b',');
@@ -37,9 +50,9 @@ pub(super) fn write_body(
         text.extend_from_slice(b"}\n");
         flush_at(&mut text, out, BUFFER)?;
     }
-    for &[a, b] in &object.segments {
+    for &[a, b] in &limbs.segments {
         let end = b;
-        let (a, b) = (&object.balls[a as usize], &object.balls[b as usize]);
+        let (a, b) = (&limbs.balls[a as usize], &limbs.balls[b as usize]);
         let Some(f) = frustum(a.centre, a.radius, b.centre, b.radius) else { continue };
         let (from, to) = (to_pov(f.a), to_pov(f.b));
         let (ra, rb) = (digits.round(f.ra), digits.round(f.rb));
@@ -60,7 +73,13 @@ pub(super) fn write_body(
         text.extend_from_slice(b"}\n");
         flush_at(&mut text, out, BUFFER)?;
     }
-    for pose in &object.poses {
+    flush_at(&mut text, out, 1)
+}
+
+/// Writes a mesh, which is declared as `one`, wherever it is posed.
+fn write_poses(poses: &[Pose], digits: Digits, one: &str, out: &mut impl Write) -> io::Result<()> {
+    let mut text = Vec::with_capacity(BUFFER + 256);
+    for pose in poses {
         // Columns of the matrix are where the axes go; POV-Ray's are its rows.
         let axes = [pose.axes.x_axis, pose.axes.z_axis, pose.axes.y_axis].map(to_pov);
         let unit = Digits(Pose::DIGITS);
@@ -73,12 +92,11 @@ pub(super) fn write_body(
         text.extend_from_slice(format!("{x},{y},{z}>}}\n").as_bytes());
         flush_at(&mut text, out, BUFFER)?;
     }
-    flush_at(&mut text, out, 1)?;
-    if object.poses.is_empty() { write_mesh(&object.mesh, digits, out) } else { Ok(()) }
+    flush_at(&mut text, out, 1)
 }
 
 /// The matrix that lays a texture along a limb.
-fn matrix(frame: &Frame, digits: Digits) -> String {
+fn matrix(frame: &LimbFrame, digits: Digits) -> String {
     let at = to_pov(frame.at - frame.axes[1] * frame.along);
     let unit = Digits(6);
     let mut numbers: Vec<String> =

@@ -2,42 +2,14 @@
 
 use std::io::{self, Write};
 
-use serde::Serialize;
-
 use super::decimal::plain_number as number;
-use super::identifier::plain;
-use super::rib_body::{MATRIX, write_object};
-use super::rib_sheets::{Sheet, sheets};
+use super::rib_body::write_object;
+use super::rib_options::RibOptions;
+use super::rib_text::{PLAIN, colour};
+use super::rib_values::{Values, has_casters, values};
 use super::{Origin, TemplateError, Templates};
-use crate::geom::Bounds;
-use crate::math::{Colour, DVec3};
-use crate::model::{Camera, Digits, Light, Material, Model, Object, Projection};
-
-/// Digits of numbers that are not lengths.
-pub(super) const PLAIN: Digits = Digits(6);
-/// Pixels along a side of a shadow map.
-const MAP: u32 = 2048;
-
-/// How a RIB scene has its shadows: renderers differ in that.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum RibShadows {
-    /// None: what every renderer takes.
-    #[default]
-    None,
-    /// Traced by the light `raydistant`, which Pixie has.
-    Rays,
-    /// Maps that the scene makes first, read by the light `shadowdistant`, which Aqsis has.
-    Maps,
-}
-
-/// What a RIB scene is like.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct RibOptions {
-    /// Shadows.
-    pub shadows: RibShadows,
-    /// Leave thorns to the displacement shader `thorns`, which must be compiled; otherwise they are cones.
-    pub displace: bool,
-}
+use crate::math::Colour;
+use crate::model::{Material, Model, Object};
 
 /// A model on its way to RIB.
 pub struct Rib<'a> {
@@ -45,71 +17,6 @@ pub struct Rib<'a> {
     templates: &'a Templates,
     options: RibOptions,
     values: Values,
-}
-
-/// What the template may ask for.
-#[derive(Serialize)]
-struct Values {
-    version: &'static str,
-    stem: String,
-    title: String,
-    command: String,
-    seed: u64,
-    width: u32,
-    height: u32,
-    camera: CameraValues,
-    lights: Vec<LightValues>,
-    maps: Vec<MapValues>,
-    /// Sky and ground.
-    sheets: Vec<Sheet>,
-    /// Are shadows traced?
-    rays: bool,
-    /// What the maps show: the end of the name of an archive.
-    casters: &'static str,
-}
-
-#[derive(Serialize)]
-struct CameraValues {
-    fov: Option<String>,
-    window: String,
-    clipping: String,
-    matrix: String,
-}
-
-#[derive(Serialize)]
-struct LightValues {
-    shader: &'static str,
-    intensity: String,
-    colour: String,
-    from: String,
-    to: Option<String>,
-    map: Option<String>,
-}
-
-#[derive(Serialize)]
-struct MapValues {
-    light: String,
-    size: u32,
-    stem: String,
-    window: String,
-    clipping: String,
-    matrix: String,
-}
-
-pub(super) fn triple(p: DVec3, digits: Digits) -> String {
-    p.to_array().map(|c| number(c, digits)).join(" ")
-}
-
-pub(super) fn colour(Colour(c): Colour) -> String {
-    triple(DVec3::from_array(c), PLAIN)
-}
-
-/// The matrix from the world to a camera at `at` with these unit vectors to the right, up and forwards: row vectors, the
-/// translation last.
-fn to_camera(at: DVec3, [r, u, f]: [DVec3; 3], digits: Digits) -> String {
-    let row = |axis: usize| format!("{} 0", triple(DVec3::new(r[axis], u[axis], f[axis]), MATRIX));
-    let last = triple(-DVec3::new(r.dot(at), u.dot(at), f.dot(at)), digits);
-    format!("{} {} {} {last} 1", row(0), row(1), row(2))
 }
 
 impl<'a> Rib<'a> {
@@ -123,84 +30,12 @@ impl<'a> Rib<'a> {
         origin: &Origin,
         options: RibOptions,
     ) -> Self {
-        let bounds = model.bounds();
-        let extent = if bounds.is_empty() { 1.0 } else { bounds.size().max_element() };
-        let digits = Digits::for_size(extent);
-        let camera = &model.camera;
-        let frame = camera.frame();
-        let sheets = sheets(model, size, digits);
-        // Everything in front of the camera, sky and ground included, with room to spare.
-        let far = bounds.corners().map(|p| (p - camera.at).dot(frame[2])).into_iter().fold(extent, f64::max);
-        let far = sheets.iter().map(|sheet| sheet.far).fold(far, f64::max) * 1.01;
-        let (fov, window) = match camera.projection {
-            Projection::Perspective { angle } => {
-                let shorter = libm::tan(angle * 0.5) * f64::min(1.0, 1.0 / camera.aspect);
-                let fov = 2.0 * libm::atan(shorter) * 180.0 / std::f64::consts::PI;
-                (Some(number(fov, PLAIN)), String::new())
-            }
-            Projection::Parallel { width } => {
-                let [across, up] = [width * 0.5, width * 0.5 / camera.aspect].map(|x| number(x, digits));
-                (None, format!("-{across} {across} -{up} {up}"))
-            }
-        };
-        let stem = plain(name);
-        let mut maps = Vec::new();
-        let lights = model.lights.iter().enumerate().map(|(i, light)| match *light {
-            Light::Sun { towards, colour: c, shadow, .. } => {
-                let map = (shadow && options.shadows == RibShadows::Maps && !bounds.is_empty())
-                    .then(|| map_values(&stem, i, towards, bounds, digits));
-                let named = map.as_ref().map(|map| format!("{}.shad", map.stem));
-                maps.extend(map);
-                LightValues {
-                    shader: match options.shadows {
-                        RibShadows::Rays if shadow => "raydistant",
-                        RibShadows::Maps if shadow => "shadowdistant",
-                        _ => "distantlight",
-                    },
-                    intensity: "1".to_owned(),
-                    colour: colour(c),
-                    from: triple(towards, PLAIN),
-                    to: Some("0 0 0".to_owned()),
-                    map: named,
-                }
-            }
-            Light::Point { at, colour: c, fade, .. } => {
-                // Theirs fall off with the square of the distance from 1 on: right far away; without a falloff, right in the
-                // middle of the scene.
-                let reach = fade.map_or((at - bounds.centre()).length(), |fade| fade * libm::sqrt(2.0));
-                LightValues {
-                    shader: "pointlight",
-                    intensity: number(reach * reach, PLAIN),
-                    colour: colour(c),
-                    from: triple(at, digits),
-                    to: None,
-                    map: None,
-                }
-            }
-        });
-        let lights = lights.collect();
-        let casters = has_casters(model, options);
-        let values = Values {
-            version: env!("CARGO_PKG_VERSION"),
-            title: plain(&model.title),
-            command: plain(&origin.command),
-            seed: origin.seed,
-            width: size[0],
-            height: size[1],
-            camera: CameraValues {
-                fov,
-                window,
-                clipping: format!("{} {}", number(extent * 1e-3, digits), number(far, digits)),
-                matrix: to_camera(camera.at, frame, digits),
-            },
-            lights,
-            maps,
-            sheets,
-            rays: options.shadows == RibShadows::Rays,
-            casters: if casters { "casters" } else { "archive" },
-            stem,
-        };
-        Self { model, templates, options, values }
+        Self { model, templates, options, values: values(model, name, size, origin, options) }
+    }
+
+    /// The materials whose patterns it shows as their mean colour alone: RenderMan has no standard shader for them.
+    pub fn plain_patterns(&self) -> impl Iterator<Item = &str> {
+        self.model.materials.iter().filter(|(_, material)| material.pattern.is_some()).map(|(name, _)| name.as_str())
     }
 
     /// The text of `NAME.rib`, without the line that tells whether it was edited.
@@ -216,7 +51,8 @@ impl<'a> Rib<'a> {
     /// The displacement shader `thorns.sl`, where the scene uses it.
     #[must_use]
     pub fn shader(&self) -> Option<&str> {
-        let is_used = self.options.displace && self.model.objects.iter().any(|object| object.thorns.is_some());
+        let limbs = self.model.objects.iter().filter_map(|object| object.body.limbs());
+        let is_used = self.options.displace && limbs.into_iter().any(|limbs| limbs.thorns.is_some());
         is_used.then(|| self.templates.text("thorns.sl"))
     }
 
@@ -244,17 +80,14 @@ impl<'a> Rib<'a> {
 
     fn write_objects(&self, is_wanted: impl Fn(&Object) -> bool, mut out: impl Write) -> io::Result<()> {
         writeln!(out, "##RenderMan RIB-Structure 1.1 Entity\nversion 3.03")?;
-        let shown = |object: &&Object| is_wanted(object) && !(self.options.displace && object.is_thorns);
+        let is_thorns = |object: &Object| object.body.limbs().is_some_and(|limbs| limbs.is_thorns);
+        let shown = |object: &&Object| is_wanted(object) && !(self.options.displace && is_thorns(object));
         for (handle, object) in (1..).zip(self.model.objects.iter().filter(shown)) {
             let (_, material) = &self.model.materials[object.material];
             write_object(object, &surface(material), handle, self.options, &mut out)?;
         }
         Ok(())
     }
-}
-
-fn has_casters(model: &Model, options: RibOptions) -> bool {
-    options.shadows == RibShadows::Maps && model.objects.iter().any(|object| !object.shadow)
 }
 
 /// The surface of a material: a colour and a standard shader.
@@ -276,35 +109,4 @@ fn surface(m: &Material) -> String {
         format!("Surface \"matte\" \"float Ka\" [{ka}] \"float Kd\" [{kd}]")
     };
     format!("Color [{}]\n{shader}", colour(Colour(c)))
-}
-
-/// A shadow map: the scene as a sun sees it.
-fn map_values(stem: &str, i: usize, towards: DVec3, bounds: Bounds, digits: Digits) -> MapValues {
-    let centre = bounds.centre();
-    let radius = bounds.size().length() * 0.5 * 1.02;
-    let eye = centre + towards * (radius * 2.0);
-    let upright = if towards.z.abs() > 0.99 { DVec3::Y } else { DVec3::Z };
-    let right = (-towards).cross(upright).normalize();
-    let half = number(radius, digits);
-    MapValues {
-        light: format!("light {}", i + 1),
-        size: MAP,
-        stem: format!("{stem}-light{}", i + 1),
-        window: format!("-{half} {half} -{half} {half}"),
-        clipping: format!("{} {}", number(radius * 0.9, digits), number(radius * 3.1, digits)),
-        matrix: to_camera(eye, [right, right.cross(-towards), -towards], digits),
-    }
-}
-
-/// Where a fraction of the picture, from the top left, looks: a direction of length 1 and where it starts.
-pub(super) fn ray(camera: &Camera, x: f64, y: f64) -> (DVec3, DVec3) {
-    let [right, up, forwards] = camera.frame();
-    let (across, upwards) = (x - 0.5, (0.5 - y) / camera.aspect);
-    match camera.projection {
-        Projection::Perspective { angle } => {
-            let wide = 2.0 * libm::tan(angle * 0.5);
-            (camera.at, (forwards + right * (across * wide) + up * (upwards * wide)).normalize())
-        }
-        Projection::Parallel { width } => (camera.at + right * (across * width) + up * (upwards * width), forwards),
-    }
 }

@@ -5,13 +5,12 @@ use std::io::{self, Write};
 use super::buffer::{BUFFER, flush_at};
 use super::decimal::{plain_number as number, push_plain as push_number};
 use super::identifier::plain;
-use super::rib::{RibOptions, RibShadows, triple};
+use super::rib_options::{RibOptions, RibShadows};
+use super::rib_text::{MATRIX, triple};
 use crate::geom::frustum;
 use crate::math::DVec3;
-use crate::model::{Digits, Instance, Mesh, Object, Pose};
+use crate::model::{Body, Digits, Instance, Limbs, Mesh, Object, Pose};
 
-/// Digits of the numbers of matrices.
-pub(super) const MATRIX: Digits = Digits(8);
 /// Triangles of one `PointsPolygons`: renderers take a mesh whole.
 const MOST_TRIANGLES: usize = 200_000;
 
@@ -29,7 +28,7 @@ pub(super) fn write_object(
     if !object.shadow && options.shadows == RibShadows::Rays {
         writeln!(out, "Attribute \"visibility\" \"int transmission\" [0]")?;
     }
-    if let Some(thorns) = object.thorns.filter(|_| options.displace) {
+    if let Some(thorns) = object.body.limbs().and_then(|limbs| limbs.thorns).filter(|_| options.displace) {
         let [height, radius, apart] = [thorns.length, thorns.radius, thorns.apart].map(|x| number(x, object.digits));
         writeln!(
             out,
@@ -40,18 +39,17 @@ pub(super) fn write_object(
             "Displacement \"thorns\" \"float height\" [{height}] \"float radius\" [{radius}] \"float apart\" [{apart}]"
         )?;
     }
-    if object.instances.len() == 1 && object.poses.is_empty() {
+    let poses: &[Pose] = if let Body::Posed(_, poses) = &object.body { poses } else { &[] };
+    if object.instances.len() == 1 && poses.is_empty() {
         write_primitives(object, object.instances[0].at, out)?;
         return writeln!(out, "AttributeEnd");
     }
     writeln!(out, "ObjectBegin {handle}")?;
     write_primitives(object, DVec3::ZERO, out)?;
     writeln!(out, "ObjectEnd")?;
-    let as_it_is = [None];
-    let posed: Vec<Option<&Pose>> = object.poses.iter().map(Some).collect();
-    let poses = if posed.is_empty() { &as_it_is[..] } else { &posed[..] };
+    let posed: Vec<Option<&Pose>> = if poses.is_empty() { vec![None] } else { poses.iter().map(Some).collect() };
     for place in &object.instances {
-        for pose in poses {
+        for pose in &posed {
             writeln!(out, "TransformBegin\nConcatTransform [{}]", placed(place, *pose, object.digits))?;
             writeln!(out, "ObjectInstance {handle}\nTransformEnd")?;
         }
@@ -69,14 +67,23 @@ fn placed(place: &Instance, pose: Option<&Pose>, digits: Digits) -> String {
 
 /// Writes what an object is made of, moved by `offset`.
 fn write_primitives(object: &Object, offset: DVec3, out: &mut impl Write) -> io::Result<()> {
-    let digits = object.digits;
+    match &object.body {
+        Body::Limbs(limbs) => write_limbs(limbs, offset, object.digits, out),
+        Body::Mesh(mesh) | Body::Posed(mesh, _) => {
+            let mut pieces = mesh.triangles.chunks(MOST_TRIANGLES);
+            pieces.try_for_each(|triangles| write_mesh(mesh, triangles, offset, object.digits, out))
+        }
+    }
+}
+
+fn write_limbs(limbs: &Limbs, offset: DVec3, digits: Digits, out: &mut impl Write) -> io::Result<()> {
     let scale = digits.scale();
     let mut text: Vec<u8> = Vec::with_capacity(BUFFER + 512);
     let length = |text: &mut Vec<u8>, x: f64| {
         push_number(text, x, digits, scale);
         text.push(b' ');
     };
-    for ball in &object.balls {
+    for ball in &limbs.balls {
         if digits.round(ball.radius) <= 0.0 {
             continue;
         }
@@ -87,8 +94,8 @@ fn write_primitives(object: &Object, offset: DVec3, out: &mut impl Write) -> io:
         text.extend_from_slice(b"360 TransformEnd\n");
         flush_at(&mut text, out, BUFFER)?;
     }
-    for &[a, b] in &object.segments {
-        let (a, b) = (&object.balls[a as usize], &object.balls[b as usize]);
+    for &[a, b] in &limbs.segments {
+        let (a, b) = (&limbs.balls[a as usize], &limbs.balls[b as usize]);
         let Some(f) = frustum(a.centre, a.radius, b.centre, b.radius) else { continue };
         let (ra, rb, long) = (digits.round(f.ra), digits.round(f.rb), digits.round((f.b - f.a).length()));
         if long <= 0.0 || (ra <= 0.0 && rb <= 0.0) {
@@ -117,12 +124,7 @@ fn write_primitives(object: &Object, offset: DVec3, out: &mut impl Write) -> io:
         text.extend_from_slice(b"360 TransformEnd\n");
         flush_at(&mut text, out, BUFFER)?;
     }
-    flush_at(&mut text, out, 1)?;
-    let pieces = object.mesh.triangles.chunks(MOST_TRIANGLES);
-    for triangles in pieces {
-        write_mesh(&object.mesh, triangles, offset, digits, out)?;
-    }
-    Ok(())
+    flush_at(&mut text, out, 1)
 }
 
 /// Writes some triangles of a mesh with the corners that they have.

@@ -4,9 +4,9 @@
 use serde::Serialize;
 
 use super::decimal::plain_number as number;
-use super::rib::{PLAIN, colour, ray, triple};
+use super::rib_text::{PLAIN, colour, triple};
 use crate::math::{Colour, DVec3};
-use crate::model::{Camera, Digits, FADE, Light, Model, Sky};
+use crate::model::{Camera, Digits, FADE, Light, Model, Projection, Sky};
 
 /// Squares across and down the picture.
 const SQUARES: [u32; 2] = [16, 48];
@@ -133,5 +133,18 @@ impl Grid {
             points.join("\n"),
             colours.join("\n")
         )
+    }
+}
+
+/// Where a fraction of the picture, from the top left, looks: a direction of length 1 and where it starts.
+fn ray(camera: &Camera, x: f64, y: f64) -> (DVec3, DVec3) {
+    let [right, up, forwards] = camera.frame();
+    let (across, upwards) = (x - 0.5, (0.5 - y) / camera.aspect);
+    match camera.projection {
+        Projection::Perspective { angle } => {
+            let wide = 2.0 * libm::tan(angle * 0.5);
+            (camera.at, (forwards + right * (across * wide) + up * (upwards * wide)).normalize())
+        }
+        Projection::Parallel { width } => (camera.at + right * (across * width) + up * (upwards * width), forwards),
     }
 }

@@ -3,9 +3,9 @@
 use std::io::{self, Write};
 
 use super::identifier::plain;
-use crate::grow::{Mark, MarkKind};
+use crate::geom::{Mark, MarkKind};
 use crate::math::{Colour, DVec2, DVec3};
-use crate::model::{Camera, Material, Model, Projected};
+use crate::model::{Body, Camera, Limbs, Material, Mesh, Model, Projected};
 
 /// How a schematic is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +29,7 @@ pub fn write_svg(model: &Model, options: SvgOptions, mut out: impl Write) -> io:
     )?;
     writeln!(out, "<title>{}</title>", escape(&plain(&model.title)))?;
     writeln!(out, r##"<rect width="{width}" height="{height}" fill="#fff"/>"##)?;
-    let view = View { camera: &model.camera, size: options.size };
+    let view = Sheet { camera: &model.camera, size: options.size };
     // What paths run over comes first, what they run between last.
     for kind in [MarkKind::Nodes, MarkKind::Edges, MarkKind::Contours, MarkKind::Shapes] {
         write_marks(&model.marks, kind, view, &mut out)?;
@@ -39,27 +39,13 @@ pub fn write_svg(model: &Model, options: SvgOptions, mut out: impl Write) -> io:
         write!(out, r#"<path fill="{}" d=""#, ink(material))?;
         for place in &object.instances {
             let disc = |p: DVec3, radius: f64| view.disc(place.to_world(p), radius * place.scale);
-            let balls: Vec<Option<Disc>> = object.balls.iter().map(|ball| disc(ball.centre, ball.radius)).collect();
-            for &[a, b] in &object.segments {
-                if let (Some(a), Some(b)) = (balls[a as usize], balls[b as usize]) {
-                    write_stroke(a, b, &mut out)?;
-                }
-            }
-            // Balls within strokes are drawn with them already.
-            if object.segments.is_empty() {
-                for disc in balls.into_iter().flatten() {
-                    write_stroke(disc, disc, &mut out)?;
-                }
-            }
-            let as_it_is = [None];
-            let posed: Vec<_> = object.poses.iter().map(Some).collect();
-            let poses = if posed.is_empty() { &as_it_is[..] } else { &posed[..] };
-            for (pose, corners) in poses.iter().flat_map(|pose| object.mesh.triangles.iter().map(move |t| (pose, t))) {
-                let point = |i: u32| object.mesh.points[i as usize];
-                let [a, b, c] = corners.map(|i| disc(pose.map_or(point(i), |pose| pose.to_object(point(i))), 0.0));
-                if let (Some(a), Some(b), Some(c)) = (a, b, c) {
-                    let [a, b, c] = [a, b, c].map(|disc| disc.centre);
-                    writeln!(out, "M{:.2} {:.2}L{:.2} {:.2}L{:.2} {:.2}z", a.x, a.y, b.x, b.y, c.x, c.y)?;
+            match &object.body {
+                Body::Limbs(limbs) => write_limbs(limbs, &disc, &mut out)?,
+                Body::Mesh(mesh) => write_triangles(mesh, &|p| p, &disc, &mut out)?,
+                Body::Posed(mesh, poses) => {
+                    for pose in poses {
+                        write_triangles(mesh, &|p| pose.to_object(p), &disc, &mut out)?;
+                    }
                 }
             }
         }
@@ -67,6 +53,37 @@ pub fn write_svg(model: &Model, options: SvgOptions, mut out: impl Write) -> io:
     }
     write_marks(&model.marks, MarkKind::Endpoints, view, &mut out)?;
     writeln!(out, "</svg>")
+}
+
+fn write_limbs(limbs: &Limbs, disc: &dyn Fn(DVec3, f64) -> Option<Disc>, out: &mut impl Write) -> io::Result<()> {
+    let balls: Vec<Option<Disc>> = limbs.balls.iter().map(|ball| disc(ball.centre, ball.radius)).collect();
+    for &[a, b] in &limbs.segments {
+        if let (Some(a), Some(b)) = (balls[a as usize], balls[b as usize]) {
+            write_stroke(a, b, out)?;
+        }
+    }
+    // Balls within strokes are drawn with them already.
+    if limbs.segments.is_empty() {
+        for disc in balls.into_iter().flatten() {
+            write_stroke(disc, disc, out)?;
+        }
+    }
+    Ok(())
+}
+
+fn write_triangles(
+    mesh: &Mesh,
+    pose: &dyn Fn(DVec3) -> DVec3,
+    disc: &dyn Fn(DVec3, f64) -> Option<Disc>,
+    out: &mut impl Write,
+) -> io::Result<()> {
+    for corners in &mesh.triangles {
+        if let [Some(a), Some(b), Some(c)] = corners.map(|i| disc(pose(mesh.points[i as usize]), 0.0)) {
+            let [a, b, c] = [a, b, c].map(|disc| disc.centre);
+            writeln!(out, "M{:.2} {:.2}L{:.2} {:.2}L{:.2} {:.2}z", a.x, a.y, b.x, b.y, c.x, c.y)?;
+        }
+    }
+    Ok(())
 }
 
 /// A ball as it is seen, in pixels.
@@ -77,12 +94,12 @@ struct Disc {
 }
 
 #[derive(Clone, Copy)]
-struct View<'a> {
+struct Sheet<'a> {
     camera: &'a Camera,
     size: [u32; 2],
 }
 
-impl View<'_> {
+impl Sheet<'_> {
     fn disc(&self, centre: DVec3, radius: f64) -> Option<Disc> {
         let Projected { x, y, scale, .. } = self.camera.project(centre)?;
         let [width, height] = self.size.map(f64::from);
@@ -122,7 +139,7 @@ fn write_stroke(a: Disc, b: Disc, out: &mut impl Write) -> io::Result<()> {
     )
 }
 
-fn write_marks(marks: &[Mark], kind: MarkKind, view: View<'_>, out: &mut impl Write) -> io::Result<()> {
+fn write_marks(marks: &[Mark], kind: MarkKind, view: Sheet<'_>, out: &mut impl Write) -> io::Result<()> {
     let pixels = f64::from(view.size[0].min(view.size[1])) / 600.0;
     let (colour, width, radius) = match kind {
         MarkKind::Nodes => ("#888", 0.0, 1.2),

@@ -5,6 +5,8 @@
 mod bounds;
 mod closed_mesh;
 mod cubes;
+mod mark;
+mod neighbours;
 mod occupancy;
 mod outline;
 mod profile;
@@ -18,6 +20,9 @@ mod voxels;
 pub use bounds::Bounds;
 pub use closed_mesh::ClosedMesh;
 pub use cubes::{Surface, fill, vertex_normals};
+pub use mark::{Mark, MarkKind};
+pub use neighbours::Neighbours;
+pub(crate) use neighbours::with_neighbours;
 pub use occupancy::Occupancy;
 pub use outline::{Outline, simplified};
 pub use profile::Profile;

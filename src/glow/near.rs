@@ -124,7 +124,8 @@ impl NearField {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::graph::{Neighbours, Weights};
+    use crate::geom::Neighbours;
+    use crate::math::Weights;
     use crate::model::{GlowSpec, NearGlow, Piece, ViewFrame, ViewSpec};
 
     /// T is a length: at distance T from a straight stroke there is 1/e of its light, whatever the weights are.

@@ -66,6 +66,11 @@ pub enum Measure {
 }
 
 impl CostField {
+    /// The shape that it measures from, if it does.
+    pub fn shape_mut(&mut self) -> Option<&mut Shape> {
+        if let Measure::Shape(shape) = &mut self.measure { Some(shape) } else { None }
+    }
+
     /// The axes along which it can change.
     #[must_use]
     pub fn varies(&self) -> [bool; 3] {

@@ -2,10 +2,9 @@
 
 use super::field::{FieldSamples, LEAST_FACTOR};
 use super::weights::{fixed, length};
-use super::{
-    Edge, FieldTable, FieldValue, Graph, Mask, Neighbours, Node, WeightError, WeightRange, WeightTable, Weights,
-};
-use crate::math::{DVec3, Stream, mix};
+use super::{Edge, FieldTable, FieldValue, Graph, Mask, Node, WeightError, WeightRange, WeightTable};
+use crate::geom::Neighbours;
+use crate::math::{DVec3, Stream, Weights, mix};
 
 /// Odd multipliers that tell coordinates apart in an edge's key: fractional parts of the square roots of 2, 3, 5.
 const AXIS_KEYS: [u64; 3] = [0x6a09_e667_f3bc_c909, 0xbb67_ae85_84ca_a73b, 0x3c6e_f372_fe94_f82b];

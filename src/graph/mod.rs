@@ -10,7 +10,6 @@ mod field_spec;
 mod joined;
 mod lattice;
 mod mask;
-mod neighbours;
 mod poisson;
 mod scatter;
 mod sectors;
@@ -21,11 +20,10 @@ pub use field::{FieldTable, FieldValue};
 pub use field_spec::{FieldSpec, FieldUse, HeightEnd, MeasureSpec};
 pub use lattice::{Lattice, LatticeError, Window};
 pub use mask::Mask;
-pub use neighbours::Neighbours;
 pub use poisson::{Region, poisson_points};
 pub use scatter::{EdgeWeights, Joining, Scatter, ScatterError, ScatterPlan, scatter_bytes, scatter_estimate};
 pub use sectors::Sectors;
-pub use weights::{WeightError, WeightRange, WeightTable, Weights};
+pub use weights::{WeightError, WeightRange, WeightTable};
 
 /// A node of a graph: a compact name that its graph can turn into a place ([`Graph::cell`]) and neighbours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -1,9 +1,6 @@
 //! Edge weights: `R^alpha` (Xu and Mould 2008, eq. 1), as a table of fixed-point integers indexed by a hash of the edge.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-use crate::math::power;
+use crate::math::{Weights, power};
 
 /// Entries of a table: the resolution of R. A hash's top 12 bits choose one.
 pub(super) const ENTRIES: usize = 1 << 12;
@@ -13,24 +10,6 @@ const FRACTION: u32 = 12;
 const LEAST_FRACTION: u32 = 4;
 /// A weight takes at most this many bits, so that costs can be compared modulo the bits of a cell.
 const WEIGHT_BITS: u32 = 24;
-
-/// The distribution of an edge's random part, `R^alpha` with R uniform in (1, max).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Weights {
-    /// Upper end of the range of R. Xu and Mould 2007's `1 + r U` is `max = 1 + r`.
-    #[schemars(range(min = 1.0, max = 1e6))]
-    pub max: f64,
-    /// How much paths vary: 0.3 is nearly straight, 1 slightly winding, 3 erratic (Fig. 2 of 2008).
-    #[schemars(range(min = 0.0, max = 1e3))]
-    pub alpha: f64,
-}
-
-impl Default for Weights {
-    fn default() -> Self {
-        Self { max: 10.0, alpha: 1.0 }
-    }
-}
 
 /// Why weights cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

@@ -1,6 +1,6 @@
 //! Which nodes are endpoints: few of many, at random.
 
-use super::endpoints::Crowd;
+use super::crowd::Crowd;
 use crate::graph::{Node, Scatter};
 use crate::math::{DVec3, Stream, mix};
 

@@ -1,10 +1,10 @@
 //! What the papers' construction figures draw: nodes, edges, endpoints, shapes and contours of cost.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-use super::{LatticeSpace, Source, Step};
-use crate::geom::Shape;
+use super::error::Problem;
+use super::site::PathTree;
+use super::space::Space;
+use super::step::{Generators, Step};
+use crate::geom::{Mark, MarkKind, Shape};
 use crate::graph::{Graph, Lattice, Node, Scatter};
 use crate::math::DVec3;
 use crate::plan::Plan;
@@ -17,43 +17,35 @@ const CONTOURS: u32 = 16;
 /// Samples along the longer side of a section through a shape.
 const SECTION: u32 = 256;
 
-/// A kind of mark in a construction drawing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum MarkKind {
-    /// A dot a node of the graph.
-    Nodes,
-    /// A line an edge.
-    Edges,
-    /// A ring an endpoint, a disc a generator.
-    Endpoints,
-    /// Outlines of the space, of what it forbids, and of where endpoints are placed.
-    Shapes,
-    /// Lines of equal path cost; in space, on the upright plane through the first generator.
-    Contours,
+/// The shapes that drawings of `step` outline: those of its space, `volumes`, those of its endpoints and generators.
+pub(super) fn drawn_shapes<'a>(step: &'a Step, volumes: &'a [Shape]) -> Vec<&'a Shape> {
+    let placed = step.endpoints.iter().filter_map(|set| set.placement.shape());
+    let inside = if let Generators::Inside(shape) = &step.source { Some(shape) } else { None };
+    step.space.iter().flat_map(Space::shapes).chain(volumes).chain(placed).chain(inside).collect()
 }
 
-/// One mark: a polyline, or a dot where it has a single point.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mark {
-    /// What it stands for.
-    pub kind: MarkKind,
-    /// Its points, in scene units.
-    pub line: Vec<DVec3>,
+/// The point that sections of `step` go through.
+fn middle(step: &Step) -> DVec3 {
+    match &step.source {
+        Generators::At(points) => points[0],
+        Generators::Inside(shape) => shape.bounds().centre(),
+        Generators::Steps(..) | Generators::Spread(_) => {
+            step.space.as_ref().map_or(DVec3::ZERO, |space| space.shape().bounds().centre())
+        }
+    }
 }
 
-/// The marks of a step, of the kinds in `show`.
+/// The marks of a step on a lattice, of the kinds in `show`.
 ///
 /// # Errors
-/// A sentence where there is too much to draw.
-pub(super) fn construction<const N: usize>(
+/// [`Problem::TooManyMarks`].
+pub(super) fn lattice_marks<const N: usize>(
     step: &Step,
-    space: &LatticeSpace,
-    plan: &Plan<'_, Lattice<N>>,
+    lattice: &Lattice<N>,
+    tree: &dyn PathTree,
     endpoints: &[Node],
     show: &[MarkKind],
-) -> Result<Vec<Mark>, String> {
-    let lattice = plan.graph();
+) -> Result<Vec<Mark>, Problem> {
     let mut marks = Vec::new();
     for &kind in show {
         let mut add = |line: Vec<DVec3>| marks.push(Mark { kind, line });
@@ -78,21 +70,13 @@ pub(super) fn construction<const N: usize>(
             }
             MarkKind::Endpoints => endpoints.iter().for_each(|&node| add(vec![lattice.position(node)])),
             MarkKind::Shapes => {
-                let mut shapes = vec![&space.shape];
-                shapes.extend(&space.forbid);
-                shapes.extend(step.endpoints.iter().filter_map(|set| match &set.placement {
-                    super::Placement::Random { inside, .. } => inside.as_ref(),
-                    super::Placement::Near(near) => Some(&near.inside),
-                    super::Placement::At(_) | super::Placement::Through(_) => None,
-                }));
-                if let Source::Inside(shape) = &step.source {
-                    shapes.push(shape);
-                }
-                for shape in shapes {
-                    sections(shape, lattice.is_plane()).into_iter().for_each(&mut add);
-                }
+                let shapes = drawn_shapes(step, &[]);
+                shapes.iter().flat_map(|shape| sections(shape, lattice.is_plane())).for_each(add);
             }
-            MarkKind::Contours => cost_contours(step, space, plan).into_iter().for_each(&mut add),
+            MarkKind::Contours => {
+                let lines = tree.contours(middle(step)).ok_or(Problem::NoContours)?;
+                lines.into_iter().for_each(add);
+            }
         }
     }
     Ok(marks)
@@ -101,13 +85,13 @@ pub(super) fn construction<const N: usize>(
 /// The marks of a scattered graph; `shapes` are those that its nodes and endpoints were placed in.
 ///
 /// # Errors
-/// A sentence where there is too much to draw.
+/// [`Problem::TooManyMarks`], [`Problem::NoContours`].
 pub(super) fn scattered_marks(
     graph: &Scatter,
     shapes: &[&Shape],
     endpoints: &[Node],
     show: &[MarkKind],
-) -> Result<Vec<Mark>, String> {
+) -> Result<Vec<Mark>, Problem> {
     let mut marks = Vec::new();
     let nodes = || (0..graph.len() as u32).map(Node);
     for &kind in show {
@@ -129,32 +113,24 @@ pub(super) fn scattered_marks(
                 let is_plane = graph.positions().iter().all(|p| p.z == 0.0);
                 shapes.iter().flat_map(|shape| sections(shape, is_plane)).for_each(add);
             }
-            MarkKind::Contours => return Err("contours of cost are drawn on lattices only".to_owned()),
+            MarkKind::Contours => return Err(Problem::NoContours),
         }
     }
     Ok(marks)
 }
 
-fn few_enough(count: u64, is_edges: bool) -> Result<(), String> {
+fn few_enough(count: u64, is_edges: bool) -> Result<(), Problem> {
     let what = if is_edges { "edges" } else { "nodes" };
-    if count > MOST_DRAWN {
-        return Err(format!("{count} {what} are too many to draw ({MOST_DRAWN} at most): use a wider spacing"));
-    }
-    Ok(())
+    if count > MOST_DRAWN { Err(Problem::TooManyMarks { what, count, most: MOST_DRAWN }) } else { Ok(()) }
 }
 
-/// Lines of equal cost on the plane, or on the upright plane through the first generator.
-fn cost_contours<const N: usize>(step: &Step, space: &LatticeSpace, plan: &Plan<'_, Lattice<N>>) -> Vec<Vec<DVec3>> {
+/// Lines of equal cost on the plane, or on the upright plane through a point.
+pub(super) fn cost_contours<const N: usize>(plan: &Plan<'_, Lattice<N>>, through: DVec3) -> Vec<Vec<DVec3>> {
     let lattice = plan.graph();
     let window = lattice.window();
     let range = lattice.weight_range();
-    let root = match &step.source {
-        Source::At(points) => points[0],
-        Source::Inside(shape) => shape.bounds().centre(),
-        Source::Steps(..) | Source::Spread(_) => space.shape.bounds().centre(),
-    };
-    let up = space.up();
-    let depth = if up == 1 { 0 } else { window.nearest(root).map_or(window.size[1] / 2, |at| at[1]) };
+    let up = if lattice.is_plane() { 1 } else { 2 };
+    let depth = if up == 1 { 0 } else { window.nearest(through).map_or(window.size[1] / 2, |at| at[1]) };
     let size = [window.size[0], window.size[up]];
     let at = |x: u32, y: u32| if up == 1 { [x, y, 0] } else { [x, depth, y] };
     let nodes = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));

@@ -2,15 +2,28 @@
 
 use std::collections::HashMap;
 
-use super::step::{MOST_NODES, bits};
-use super::{GrowError, Method, Step};
+use super::error::{GrowError, Key, Problem};
+use super::grown::{Grown, MOST_NODES, bits};
+use super::step::{Context, Step, Yield};
 use crate::skeleton::{Skeleton, SkeletonNode, bend, smooth};
 
 impl Step {
+    /// `grown` with the step's name and its finished skeleton.
+    pub(super) fn finish_with(
+        &self,
+        grown: Grown,
+        skeleton: Skeleton,
+        context: &Context<'_>,
+    ) -> Result<Grown, GrowError> {
+        let first_level = self.first_level(context.grown);
+        let skeleton = self.finish(skeleton, context.grown)?;
+        Ok(Grown { name: self.name.clone(), first_level, skeleton, ..grown })
+    }
+
     /// Radii, smoothing, ages and branches.
     pub(super) fn finish(&self, mut skeleton: Skeleton, grown: &[Option<&Skeleton>]) -> Result<Skeleton, GrowError> {
         // Growth without a graph knows its roots and limbs.
-        let is_free = matches!(self.method, Method::Segments(_) | Method::Voxels(_));
+        let is_free = self.method.yields() == Yield::Limbs;
         if self.repeat.is_none() {
             if !is_free {
                 skeleton.root_paths();
@@ -21,7 +34,7 @@ impl Step {
                 skeleton.nodes.iter_mut().for_each(|node| node.level += level);
             }
         }
-        if matches!(self.method, Method::Regions(_)) {
+        if self.method.yields() == Yield::Solids {
             return Ok(skeleton);
         }
         let parts = self.parts();
@@ -30,16 +43,14 @@ impl Step {
             .map_or(skeleton.nodes.len() as u64, |pieces| skeleton.paths.len() as u64 * (u64::from(pieces) + 1));
         let all = nodes.saturating_mul(u64::from(parts));
         if all > MOST_NODES {
-            let key = if parts > 1 { "symmetry" } else { "strands" };
-            let message = format!("{all} nodes are more than {MOST_NODES}: use fewer endpoints, pieces or parts");
-            return Err(GrowError::Scene { place: format!("grow.{}.{key}", self.name), message });
+            let key = if parts > 1 { Key::Symmetry } else { Key::Strands };
+            return Err(self.error(key, Problem::TooManyNodes { count: all, most: MOST_NODES }));
         }
         if let Some(pieces) = self.strands {
             skeleton = skeleton.strands(pieces);
         }
-        self.width
-            .apply(&mut skeleton)
-            .map_err(|message| GrowError::Scene { place: format!("grow.{}.width", self.name), message })?;
+        let width = self.width.apply(&mut skeleton);
+        width.map_err(|error| self.error(Key::Width, Problem::Width(error.to_string())))?;
         if self.smooth > 0.0 {
             smooth(&mut skeleton, self.smooth);
             skeleton = bend(&skeleton);

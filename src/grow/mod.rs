@@ -1,61 +1,64 @@
 //! Growth: the steps of a scene, each to a skeleton: by least-cost paths in its space, by segments, in voxels, or as solids.
 //!
-//! Later stages need never handle an endpoint without a path: unreached ones are an error or dropped and counted.
+//! A method is a folder; [`Method`] is what it offers. Later stages need never handle an endpoint without a path:
+//! unreached ones are an error or dropped and counted.
 
-mod automaton;
+mod baselines;
 mod choice;
 mod construction;
-mod dbm;
-mod dla;
+mod crowd;
 mod endpoints;
+mod error;
 mod finish;
-mod fractal;
-mod grammar;
-mod influence;
-mod isosurface;
-mod laplace;
-mod light;
-mod neighbourhood;
-mod refine;
+mod grown;
+mod limb_starts;
+mod lookup;
+mod method_spec;
+mod methods;
+mod near;
+mod paths;
+mod placement;
+mod plants;
 mod regions;
-mod repeat;
+mod resolve;
 mod rounds;
-mod scatter_space;
-mod scattered;
+mod rules;
+mod rules_check;
 mod segments;
-mod segments_spec;
-mod solids;
+mod site;
 mod space;
+mod spaces;
 mod spec;
 mod starts;
 mod step;
-mod voxel_space;
-mod voxels_spec;
+mod targets;
+mod voxels;
 
-pub use automaton::{Automaton, Cling};
-pub use construction::{Mark, MarkKind};
-pub use dbm::{Dbm, DbmSpec, SIDE, Solver};
-pub use dla::{DlaSpec, Walk};
-pub use endpoints::{Endpoints, Near, Placement};
-pub use fractal::{FractalSpec, Vicinity};
-pub use grammar::GrammarSpec;
-pub use influence::{Canopy, Influence, Rank, sky};
-pub use isosurface::{Distance, IsosurfaceSpec, isosurface};
-pub use light::LightSense;
-pub use refine::{Refine, RefineSpec};
+pub use baselines::{DbmSpec, DlaSpec, SIDE, Solver, Walk};
+pub use endpoints::{Endpoints, Placement, RandomPlaces};
+pub use error::{GrowError, Key, Problem};
+pub use grown::{Grown, MOST_NODES, Part};
+pub use lookup::{Lookup, Sketched};
+pub use method_spec::MethodSpec;
+pub use near::{Near, Toward};
+pub use paths::{FractalSpec, GrammarError, GrammarSpec, Paths, Refine, RefineError, RefineSpec, Vicinity};
+pub use plants::check_plants;
 pub use regions::{Regions, RegionsSpec};
-pub use repeat::{
-    ClustersSpec, Index, InfluenceSpec, LifespanSpec, Loss, Orient, RankSpec, RepeatSpec, ShadeSpec, TurnSpec, Upright,
+pub use resolve::{resolve_step, waits_for_itself};
+pub use rounds::{
+    Canopy, Index, Influence, InfluenceSpec, LifespanSpec, Loss, Orient, Rank, RankSpec, Repeat, RepeatSpec, Rounds,
+    ShadeSpec, Target, Turn, TurnSpec, Upright, sky,
 };
-pub use rounds::{Repeat, Rounds, Target, Turn};
-pub use scatter_space::{Clusters, ScatterSpace};
-pub use segments::{Attractor, Branches, Expected, Segments};
-pub use segments_spec::{AttractorSpec, BranchesSpec, SegmentsSpec};
-pub use space::{LatticeSpace, Space};
-pub use spec::{
-    EndpointSpec, FromSpec, LatticeSpec, MethodSpec, NearSpec, NodesSpec, ScatterSpec, SpaceSpec, SpreadSpec, StepSpec,
-    Toward, Unreached, VoxelNodesSpec,
+pub use segments::{
+    Attractor, AttractorSpec, Branches, BranchesSpec, Expected, Segments, SegmentsSpec, TooMany, expected_of,
 };
-pub use step::{GrowError, Grown, MOST_NODES, Method, Part, Source, Step};
-pub use voxel_space::VoxelSpace;
-pub use voxels_spec::{AgeBranchesSpec, ClingSpec, KeepFromSpec, LightSenseSpec, SunSpec, VoxelsSpec};
+pub use space::{NodesSpec, Space, SpaceSpec};
+pub use spaces::{
+    Clusters, ClustersSpec, LatticeSpace, LatticeSpec, ScatterSpace, ScatterSpec, VoxelError, VoxelNodesSpec,
+    VoxelSpace, resolve_space,
+};
+pub use spec::{EndpointSpec, FromSpec, NearSpec, SpreadSpec, StepSpec};
+pub use step::{Context, Generators, Method, Step, Unreached, Yield};
+pub use voxels::{
+    AgeBranchesSpec, Automaton, Cling, ClingSpec, KeepFromSpec, LightSense, LightSenseSpec, SunSpec, VoxelsSpec,
+};

@@ -1,14 +1,77 @@
-//! Spaces whose names and files are resolved, and the lattice that one becomes.
+//! Spaces: the kinds of graphs that steps grow in. A new kind is a file in `spaces/`, and a row in each list here.
 
-use rayon::prelude::*;
+use std::collections::BTreeMap;
 
-use super::{ScatterSpace, VoxelSpace};
-use crate::geom::Shape;
-use crate::graph::{CostField, Lattice, LatticeError, Mask, Neighbours, Weights, Window};
-use crate::math::{DVec3, Stream};
-use crate::plan;
+use schemars::JsonSchema;
+use serde::Deserialize;
 
-/// Where a step plans its paths.
+use super::spaces::{ClustersSpec, LatticeSpace, LatticeSpec, ScatterSpace, ScatterSpec, VoxelNodesSpec, VoxelSpace};
+use crate::geom::{Shape, ShapeSpec};
+use crate::graph::FieldSpec;
+use crate::math::{Ref, Weights};
+
+/// A randomly weighted graph in a shape, where paths are planned.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpaceSpec {
+    /// Take everything that is not given here from the space of this name. The random weights are this space's own.
+    #[serde(default)]
+    pub like: Option<Ref<Space>>,
+    /// Where nodes are.
+    pub shape: ShapeSpec,
+    /// A shape that no path enters.
+    #[serde(default)]
+    pub forbid: Option<ShapeSpec>,
+    /// How nodes are laid out and joined.
+    pub nodes: NodesSpec,
+    /// The random part of the weights.
+    #[serde(default)]
+    pub weights: Weights,
+    /// Cost fields, by name.
+    #[serde(default)]
+    pub field: BTreeMap<String, FieldSpec>,
+    /// Volumes around a few points in addition to the shape, each joined to it and never to each other (scattered nodes
+    /// only).
+    #[serde(default)]
+    pub clusters: Option<ClustersSpec>,
+    /// The name of the random stream: spaces with the same one have the same random weights. By default the space's
+    /// own name.
+    #[serde(default)]
+    pub stream: Option<String>,
+}
+
+/// How the nodes of a graph are laid out.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum NodesSpec {
+    /// A regular lattice.
+    Lattice(LatticeSpec),
+    /// Irregular: Poisson-disc nodes, no two nearer than the spacing and with no room for another (Xu and Mould 2012,
+    /// section 3.1).
+    Scatter(ScatterSpec),
+    /// None: voxels, for growth by voxels (Greene 1989). What is forbidden in the space takes up voxels, and light.
+    Voxels(VoxelNodesSpec),
+}
+
+impl NodesSpec {
+    /// Is it a regular lattice?
+    #[must_use]
+    pub fn is_lattice(&self) -> bool {
+        matches!(self, Self::Lattice(_))
+    }
+
+    /// Do the nodes lie in a plane?
+    #[must_use]
+    pub fn is_plane(&self) -> bool {
+        match self {
+            Self::Lattice(lattice) => lattice.neighbours.dimensions() == 2,
+            Self::Scatter(scatter) => scatter.plane,
+            Self::Voxels(_) => false,
+        }
+    }
+}
+
+/// Where a step grows.
 #[derive(Clone, Debug)]
 pub enum Space {
     /// On a regular lattice.
@@ -30,6 +93,25 @@ impl Space {
         }
     }
 
+    /// Where nodes are, and where none are.
+    pub fn shapes(&self) -> impl Iterator<Item = &Shape> {
+        let forbid = match self {
+            Self::Lattice(space) => &space.forbid,
+            Self::Scatter(space) => &space.forbid,
+            Self::Voxels(space) => &space.forbid,
+        };
+        std::iter::once(self.shape()).chain(forbid)
+    }
+
+    /// Every shape in it, to change.
+    pub(super) fn shapes_mut(&mut self) -> Vec<&mut Shape> {
+        match self {
+            Self::Lattice(space) => space.shapes_mut(),
+            Self::Scatter(space) => space.shapes_mut(),
+            Self::Voxels(space) => space.shapes_mut(),
+        }
+    }
+
     /// Index of the coordinate that points up: y in the plane, z in space.
     #[must_use]
     pub fn up(&self) -> usize {
@@ -44,120 +126,5 @@ impl Space {
     #[must_use]
     pub fn lattice(&self) -> Option<&LatticeSpace> {
         if let Self::Lattice(space) = self { Some(space) } else { None }
-    }
-}
-
-/// A regular lattice in a shape.
-#[derive(Clone, Debug)]
-pub struct LatticeSpace {
-    /// Where nodes are.
-    pub shape: Shape,
-    /// Where none are.
-    pub forbid: Option<Shape>,
-    /// The window onto the infinite lattice around the shape.
-    pub window: Window,
-    /// How nodes are joined.
-    pub neighbours: Neighbours,
-    /// The random part of the weights.
-    pub weights: Weights,
-    /// The rest of them.
-    pub fields: Vec<CostField>,
-    /// Name of the random stream.
-    pub stream: String,
-}
-
-impl LatticeSpace {
-    /// The window around `shape`.
-    ///
-    /// # Errors
-    /// As [`Window::new`].
-    pub fn window(shape: &Shape, spacing: f64, neighbours: Neighbours) -> Result<Window, LatticeError> {
-        let bounds = shape.bounds();
-        Window::new(bounds.min, bounds.max, spacing, neighbours.dimensions())
-    }
-
-    /// Index of the coordinate that points up: y in the plane, z in space.
-    #[must_use]
-    pub fn up(&self) -> usize {
-        if self.neighbours.dimensions() == 2 { 1 } else { 2 }
-    }
-
-    /// May paths pass through `p`?
-    #[must_use]
-    pub fn is_open(&self, p: DVec3) -> bool {
-        // Nodes on the surface belong to the shape, whatever rounding says.
-        let slack = self.window.spacing * 1e-6;
-        self.shape.distance(p) <= slack && !self.forbid.as_ref().is_some_and(|f| f.contains(p))
-    }
-
-    fn is_masked(&self) -> bool {
-        self.forbid.is_some() || !self.shape.is_box()
-    }
-
-    fn varies(&self) -> [bool; 3] {
-        let mut varies = [false; 3];
-        for field in &self.fields {
-            for (axis, v) in field.varies().into_iter().enumerate() {
-                varies[axis] |= v && (axis < 2 || self.up() == 2);
-            }
-        }
-        varies
-    }
-
-    /// Bytes that planning in it takes at its peak.
-    #[must_use]
-    pub fn bytes_needed(&self) -> u64 {
-        let nodes = self.window.nodes();
-        let varies = self.varies();
-        let table: u64 = (0..3).map(|axis| if varies[axis] { u64::from(self.window.size[axis]) } else { 1 }).product();
-        // A field table has 8 bytes an entry, made from samples of 16.
-        let fields = if self.fields.is_empty() { 0 } else { table * 24 };
-        let mask = if self.is_masked() { nodes / 8 } else { 0 };
-        (plan::bytes_needed(nodes) + mask).max(nodes / 8 + fields) + fields / 3
-    }
-
-    /// The lattice of a scene with this seed. `N` is the number of neighbours.
-    ///
-    /// # Errors
-    /// [`LatticeError`] when no node is open or weights are out of range.
-    pub fn lattice<const N: usize>(&self, seed: u64) -> Result<Lattice<N>, LatticeError> {
-        let mask = self.is_masked().then(|| self.mask());
-        if mask.as_ref().is_some_and(|mask| mask.open() == 0) {
-            return Err(LatticeError::Empty);
-        }
-        self.lattice_in(self.window, &self.stream, seed, mask)
-    }
-
-    /// A lattice with the weights and fields of this space, but its own window, random stream and mask.
-    ///
-    /// # Errors
-    /// [`LatticeError::Weights`] where weights are out of range.
-    pub(super) fn lattice_in<const N: usize>(
-        &self,
-        window: Window,
-        stream: &str,
-        seed: u64,
-        mask: Option<Mask>,
-    ) -> Result<Lattice<N>, LatticeError> {
-        debug_assert_eq!(N as u32, self.neighbours.count());
-        let field = (!self.fields.is_empty()).then(|| (self.varies(), |p| CostField::combine(&self.fields, p)));
-        Lattice::new(window, &Stream::new(seed, &format!("space/{stream}")), self.weights, field, mask)
-    }
-
-    fn mask(&self) -> Mask {
-        let [x, y, _] = self.window.size.map(u64::from);
-        let nodes = self.window.nodes();
-        let words = (0..nodes.div_ceil(64))
-            .into_par_iter()
-            .map(|word| {
-                (0..64).fold(0_u64, |bits, bit| {
-                    let cell = word * 64 + bit;
-                    let at = [cell % x, cell / x % y, cell / (x * y)].map(|c| c as u32);
-                    let blocked = cell < nodes && !self.is_open(self.window.position(at));
-                    bits | u64::from(blocked) << bit
-                })
-            })
-            .collect();
-        Mask::from_words(words, nodes as usize)
     }
 }

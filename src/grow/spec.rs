@@ -1,120 +1,20 @@
-//! Spaces and steps as a scene writes them.
+//! Steps as a scene writes them.
 
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{
-    AttractorSpec, ClustersSpec, DbmSpec, DlaSpec, FractalSpec, GrammarSpec, RefineSpec, RegionsSpec, RepeatSpec,
-    SegmentsSpec, Space, Step, VoxelsSpec,
-};
+use super::method_spec::MethodSpec;
+use super::near::Toward;
+use super::paths::{GrammarSpec, RefineSpec};
+use super::rounds::RepeatSpec;
+use super::segments::AttractorSpec;
+use super::space::Space;
+use super::step::{Step, Unreached};
 use crate::geom::ShapeSpec;
-use crate::graph::{FieldSpec, Neighbours, Weights};
 use crate::math::{PerRound, Point, Ref};
 use crate::skeleton::{FormSpec, SymmetrySpec, Width};
-
-/// A randomly weighted graph in a shape, where paths are planned.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SpaceSpec {
-    /// Take everything that is not given here from the space of this name. The random weights are this space's own.
-    #[serde(default)]
-    pub like: Option<Ref<Space>>,
-    /// Where nodes are.
-    pub shape: ShapeSpec,
-    /// A shape that no path enters.
-    #[serde(default)]
-    pub forbid: Option<ShapeSpec>,
-    /// How nodes are laid out and joined.
-    pub nodes: NodesSpec,
-    /// The random part of the weights.
-    #[serde(default)]
-    pub weights: Weights,
-    /// Cost fields, by name.
-    #[serde(default)]
-    pub field: BTreeMap<String, FieldSpec>,
-    /// Volumes around a few points in addition to the shape, each joined to it and never to each other (scattered nodes
-    /// only).
-    #[serde(default)]
-    pub clusters: Option<ClustersSpec>,
-    /// The name of the random stream: spaces with the same one have the same random weights. By default the space's
-    /// own name.
-    #[serde(default)]
-    pub stream: Option<String>,
-}
-
-/// How the nodes of a graph are laid out.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum NodesSpec {
-    /// A regular lattice.
-    Lattice(LatticeSpec),
-    /// Irregular: Poisson-disc nodes, no two nearer than the spacing and with no room for another (Xu and Mould 2012,
-    /// section 3.1).
-    Scatter(ScatterSpec),
-    /// None: voxels, for growth by voxels (Greene 1989). What is forbidden in the space takes up voxels, and light.
-    Voxels(VoxelNodesSpec),
-}
-
-impl NodesSpec {
-    /// Is it a regular lattice?
-    #[must_use]
-    pub fn is_lattice(&self) -> bool {
-        matches!(self, Self::Lattice(_))
-    }
-
-    /// Do the nodes lie in a plane?
-    #[must_use]
-    pub fn is_plane(&self) -> bool {
-        match self {
-            Self::Lattice(lattice) => lattice.neighbours.dimensions() == 2,
-            Self::Scatter(scatter) => scatter.plane,
-            Self::Voxels(_) => false,
-        }
-    }
-}
-
-/// Voxels: the space is kept where something is in it, so that a large one costs little.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct VoxelNodesSpec {
-    /// Side of a voxel, in scene units: no more than half as wide as the thinnest wall is thick.
-    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
-    pub side: f64,
-}
-
-/// Scattered nodes, joined to the nearest in each sector (a Yao graph) or within a radius.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ScatterSpec {
-    /// Least distance between nodes, in scene units; in the space of a repeated step times its size.
-    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
-    pub spacing: f64,
-    /// Sectors of the Yao graph: 6, 8 (the orthants) or 24 in space, 3 to 24 in the plane. By default 8 and 6.
-    #[serde(default)]
-    #[schemars(range(min = 3, max = 24))]
-    pub sectors: Option<u32>,
-    /// In place of the Yao graph: all nodes no farther apart than this are joined, in scene units, also where the space of
-    /// a repeated step is scaled.
-    #[serde(default)]
-    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
-    pub radius: Option<f64>,
-    /// Do they lie in the plane, with y up?
-    #[serde(default)]
-    pub plane: bool,
-}
-
-/// A regular lattice: its nodes are the multiples of the spacing within the shape.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct LatticeSpec {
-    /// Distance between neighbours along an axis, in scene units.
-    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
-    pub spacing: f64,
-    /// 4 or 8 neighbours in the plane, 6, 18 or 26 in space; longer edges cost in proportion.
-    pub neighbours: Neighbours,
-}
 
 /// One growth step: from generators, by paths to endpoints or in other ways.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -208,28 +108,6 @@ pub struct SpreadSpec {
     pub apart: f64,
 }
 
-/// How limbs come about.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum MethodSpec {
-    /// By least-cost paths (Xu and Mould 2007, section 3).
-    #[default]
-    Paths,
-    /// By least-cost paths to endpoints at a distance from all that has grown, again and again (2007, section 3.2); on
-    /// lattices.
-    Fractal(FractalSpec),
-    /// Not limbs but solids: all that is nearest to each generator (2007, section 3.4); on lattices.
-    Regions(RegionsSpec),
-    /// By segments, a step of each limb at a time, without a graph (Amin's Growth module).
-    Segments(SegmentsSpec),
-    /// By a voxel space automaton that senses light, other growth and surfaces (Greene 1989).
-    Voxels(VoxelsSpec),
-    /// By the dielectric breakdown model, as a baseline.
-    Dbm(DbmSpec),
-    /// By diffusion-limited aggregation, as a baseline.
-    Dla(DlaSpec),
-}
-
 /// Endpoints in the vicinity of what a step grew (Xu and Mould 2007, section 4: side branches of lightning).
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -250,17 +128,6 @@ pub struct NearSpec {
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub shorten: f64,
-}
-
-/// Where side branches tend to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Toward {
-    /// Down.
-    #[default]
-    Down,
-    /// The way that the step goes, from its root to the end of its first path.
-    Along,
 }
 
 /// A set of endpoints: exactly one of `count`, `at`, `through`, `sketch` and `grammar`. Adding to `count` keeps those already placed.
@@ -312,15 +179,4 @@ pub struct EndpointSpec {
 
 fn main_class() -> String {
     "main".to_owned()
-}
-
-/// What to do about endpoints that no path reaches.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Unreached {
-    /// Refuse the scene.
-    #[default]
-    Error,
-    /// Leave them out, with a warning that counts them.
-    Drop,
 }

@@ -1,97 +1,109 @@
-//! Where limbs start that no graph carries: at points, at the ends of what grew, or all along it.
+//! Generators: from what a step grows from to nodes of its graph, for any graph.
 
-use super::{GrowError, Part, Source, Step};
-use crate::math::{DVec3, name_of};
-use crate::skeleton::Skeleton;
+use std::collections::HashMap;
 
-/// Where a limb starts.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Start {
-    /// Where it is.
-    pub at: DVec3,
-    /// The way it grows, of length 1.
-    pub way: DVec3,
-    /// The way of the last branch of the limb that it carries on; zero where it has none.
-    pub last: DVec3,
-    /// What tells it from all others, whatever else grows: its random numbers depend on it.
-    pub name: u64,
-}
+use super::error::{GrowError, Key, Problem};
+use super::grown::{bits, places};
+use super::site::{PathSite, Site};
+use super::step::{Context, Generators, Step};
+use crate::graph::Node;
+use crate::math::DVec3;
 
-/// The name of a limb that carries on one with this name, of the source with this index; no branch has it.
-fn next_name(limb: u64, source: u64) -> u64 {
-    name_of(limb, u64::MAX - source)
-}
+/// A node, and where exactly it is meant where that is told.
+pub(super) type Placed = (Node, Option<DVec3>);
 
-/// The name of a branch: of a limb's node, counted from where the limb starts, the one with this index.
-pub(super) fn branch_name(limb: u64, node: u32, index: u32) -> u64 {
-    name_of(limb, u64::from(node) << 32 | u64::from(index))
-}
-
-impl Step {
-    /// Where limbs start that grow from points (along `heading`) or from ends.
-    pub(super) fn starts_of_limbs(&self, heading: DVec3, grown: &[Option<&Skeleton>]) -> Result<Vec<Start>, GrowError> {
-        let wrong =
-            |message: &str| GrowError::Scene { place: format!("grow.{}.from", self.name), message: message.to_owned() };
-        match &self.source {
-            Source::At(points) => {
-                let start = |(&at, name)| Start { at, way: heading, last: DVec3::ZERO, name };
-                Ok(points.iter().zip(0..).map(start).collect())
-            }
-            Source::Steps(steps, part @ (Part::Ends | Part::EveryEnd)) => {
-                let mut starts = Vec::new();
-                for (&step, i) in steps.iter().zip(0..) {
-                    let skeleton = grown[step].ok_or_else(|| wrong("the step has not grown"))?;
-                    let last = last_branches(skeleton);
-                    starts.extend(skeleton.end_paths(*part == Part::EveryEnd).map(|path| {
-                        let end = skeleton.paths[path].end;
-                        Start {
-                            at: skeleton.nodes[end as usize].position,
-                            way: skeleton.way_into(end).unwrap_or(heading),
-                            last: last[path],
-                            name: next_name(skeleton.paths[path].name, i),
-                        }
-                    }));
-                }
-                Ok(starts)
-            }
-            Source::Inside(_) | Source::Spread(_) | Source::Steps(_, Part::All) => {
-                Err(wrong("limbs without a graph start at points or at ends"))
-            }
+/// Where the steps that `step` grows from are; in order.
+pub(super) fn source_places(step: &Step, context: &Context<'_>) -> Result<Vec<DVec3>, GrowError> {
+    let mut all = Vec::new();
+    if let Generators::Steps(steps, part) = &step.source {
+        for &source in steps {
+            let skeleton = context.grown[source].ok_or_else(|| step.error(Key::From, Problem::NotGrown))?;
+            all.extend(places(skeleton, *part));
         }
     }
-
-    /// The limbs of the steps that this one sprouts from, each as the places where it grew on, from its start: their
-    /// starts have the way of the limb there. Where it grew by steps of a length, nodes that smoothing added between are
-    /// no such places.
-    pub(super) fn limbs_before(&self, step: Option<f64>, grown: &[Option<&Skeleton>]) -> Vec<Vec<Start>> {
-        let is_place = |cost: f64| step.is_none_or(|step| (cost / step - libm::round(cost / step)).abs() < 1e-6);
-        let mut limbs = Vec::new();
-        for (skeleton, i) in self.sources().iter().filter_map(|&step| grown[step]).zip(0..) {
-            for (path, limb) in skeleton.paths.iter().zip(skeleton.limbs()) {
-                let name = next_name(path.name, i);
-                let places = limb.nodes.windows(2).filter(|pair| is_place(skeleton.nodes[pair[0] as usize].cost));
-                let on = places.zip(0..).map(|(pair, place)| {
-                    let [at, next] = [pair[0], pair[1]].map(|n| skeleton.nodes[n as usize].position);
-                    let way = skeleton.way_into(pair[0]).unwrap_or((next - at).normalize_or(DVec3::Z));
-                    Start { at, way, last: DVec3::ZERO, name: branch_name(name, place, 0) }
-                });
-                limbs.push(on.collect());
-            }
-        }
-        limbs
-    }
+    Ok(all)
 }
 
-/// For each path the way of the last branch of its limb, or of the limb that this carries on; zero where it has none.
-fn last_branches(skeleton: &Skeleton) -> Vec<DVec3> {
-    let mut last: Vec<(f64, DVec3)> = skeleton.paths.iter().map(|path| (f64::NEG_INFINITY, path.last)).collect();
-    let at = |node: u32| skeleton.nodes[node as usize];
-    for limb in skeleton.limbs() {
-        let (Some((from, path)), Some(&first)) = (limb.leaves, limb.nodes.first()) else { continue };
-        let slot = &mut last[path as usize];
-        if at(from).cost >= slot.0 {
-            *slot = (at(from).cost, (at(first).position - at(from).position).normalize_or_zero());
+/// The generators of `step`. No node is named twice: of several places about a node the nearest counts, then the first.
+pub(super) fn starts(step: &Step, site: &mut dyn Site, context: &Context<'_>) -> Result<Vec<Placed>, GrowError> {
+    let wrong = |problem: Problem| step.error(Key::From, problem);
+    let starts: Vec<Placed> = match &step.source {
+        Generators::At(points) => {
+            let nodes = site.within(points).into_iter().zip(points);
+            let node = |(node, &p): (Option<Node>, &DVec3)| match node {
+                Some(node) => Ok((node, Some(p))),
+                None => Err(wrong(Problem::GeneratorOutside(p))),
+            };
+            nodes.map(node).collect::<Result<_, _>>()?
+        }
+        Generators::Inside(shape) => {
+            let nodes = site.inside(shape);
+            nodes.iter().for_each(|&node| site.take(node));
+            // They differ.
+            return if nodes.is_empty() {
+                Err(wrong(Problem::NoNodeInShape))
+            } else {
+                Ok(nodes.into_iter().map(|node| (node, None)).collect())
+            };
+        }
+        Generators::Spread(random) => {
+            site.choose(random, context.seed).map_err(wrong)?.into_iter().map(|node| (node, None)).collect()
+        }
+        Generators::Steps(..) => {
+            let places = source_places(step, context)?;
+            let nodes = site.carried(&places).into_iter().zip(places);
+            nodes.filter_map(|(node, p)| Some((node?, Some(p)))).collect()
+        }
+    };
+    if starts.is_empty() {
+        let is_steps = matches!(step.source, Generators::Steps(..));
+        return Err(wrong(if is_steps { Problem::NothingInSpace } else { Problem::NoNodeInShape }));
+    }
+    let far = |&(node, p): &Placed| p.map_or(0.0, |p| (p - site.position(node)).length_squared());
+    let mut best: HashMap<Node, usize> = HashMap::new();
+    for (i, start) in starts.iter().enumerate() {
+        let kept = best.entry(start.0).or_insert(i);
+        if far(start) < far(&starts[*kept]) {
+            *kept = i;
         }
     }
-    last.into_iter().map(|(_, way)| way).collect()
+    let starts: Vec<Placed> =
+        starts.iter().enumerate().filter(|(i, start)| best[&start.0] == *i).map(|(_, start)| *start).collect();
+    starts.iter().for_each(|&(node, _)| site.take(node));
+    Ok(starts)
+}
+
+/// Each of `starts` with the cost that it starts at: that of going to it along the step that this one grows from.
+pub(super) fn delayed(
+    step: &Step,
+    site: &dyn PathSite,
+    starts: &[Placed],
+    context: &Context<'_>,
+) -> Result<Vec<(Node, u64)>, GrowError> {
+    let along = lengths_along(step, context);
+    let (Some(&(first, _)), false) = (starts.first(), along.is_empty()) else {
+        return Ok(starts.iter().map(|&(node, _)| (node, 0)).collect());
+    };
+    let [cost, length] = site.cost_over_length(first, context.progress)?;
+    let scale = step.along * cost / length;
+    let delay = |p: DVec3| along.get(&bits(p)).map_or(0, |length| (length * scale) as u64);
+    Ok(starts.iter().map(|&(node, at)| (node, at.map_or(0, delay))).collect())
+}
+
+/// How far each place of the steps that `step` grows from is along them; nothing where that costs nothing.
+fn lengths_along(step: &Step, context: &Context<'_>) -> HashMap<[u64; 3], f64> {
+    let mut along: HashMap<[u64; 3], f64> = HashMap::new();
+    if step.along <= 0.0 {
+        return along;
+    }
+    for skeleton in step.sources().iter().filter_map(|&source| context.grown[source]) {
+        let mut lengths: Vec<f64> = Vec::with_capacity(skeleton.nodes.len());
+        for node in &skeleton.nodes {
+            lengths.push(node.parent.map_or(0.0, |parent| {
+                lengths[parent as usize] + (node.position - skeleton.nodes[parent as usize].position).length()
+            }));
+            along.entry(bits(node.position)).or_insert(lengths[lengths.len() - 1]);
+        }
+    }
+    along
 }

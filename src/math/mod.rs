@@ -12,6 +12,7 @@ mod random;
 mod rotation;
 mod srgb;
 pub mod tolerance;
+mod weights;
 
 pub use glam::{DMat3, DVec2, DVec3};
 
@@ -23,3 +24,4 @@ pub use progress::{Cancelled, Progress};
 pub use random::{Stream, mix, name_of};
 pub use rotation::{frame_along, rotation, turned_toward};
 pub use srgb::{from_srgb, srgb_byte, to_srgb};
+pub use weights::Weights;

@@ -84,13 +84,13 @@ impl Material {
     /// Its colour with the mean of its pattern.
     #[must_use]
     pub fn mean_colour(&self) -> Colour {
-        self.pattern.map_or(self.colour, |pattern| self.blend(pattern.mean()))
+        self.pattern.map_or(self.colour, |pattern| self.blend(pattern.figure().mean()))
     }
 
     /// Its colour with this share of its pattern's over it.
     #[must_use]
     pub fn blend(&self, share: f64) -> Colour {
-        let Colour(over) = self.pattern.map_or(self.colour, |pattern| pattern.colour());
+        let Colour(over) = self.pattern.map_or(self.colour, |pattern| pattern.figure().colour());
         Colour([0, 1, 2].map(|i| self.colour.0[i] + (over[i] - self.colour.0[i]) * share))
     }
 

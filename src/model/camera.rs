@@ -33,6 +33,23 @@ impl Default for CameraSpec {
     }
 }
 
+/// Why there is no view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CameraError {
+    /// A place without a direction.
+    #[error("a camera with `at` needs `look_at` too")]
+    LooksNowhere,
+    /// A direction without a place.
+    #[error("a camera with `look_at` needs `at` too")]
+    StandsNowhere,
+    /// The top of the picture would be anywhere.
+    #[error("a camera must not look straight up or down, or at its own place")]
+    Upright,
+    /// A parallel view is fitted, not placed.
+    #[error("a camera with `at` needs an `angle` above 0")]
+    NoAngle,
+}
+
 /// A camera in world space; the top of the picture is up (z).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -75,31 +92,35 @@ pub struct Projected {
 }
 
 impl Camera {
+    /// A parallel view from the front, one unit wide.
+    pub const FRONT: Self =
+        Self { at: DVec3::NEG_Y, look_at: DVec3::ZERO, projection: Projection::Parallel { width: 1.0 }, aspect: 1.0 };
+
     /// The camera that `spec` describes, fitted to `balls` (centre, radius) where it has no place of its own.
     /// `aspect` is the picture's width over its height.
     ///
     /// # Errors
-    /// A sentence where `at` and `look_at` do not fit together.
+    /// [`CameraError`] where `at`, `look_at` and `angle` do not fit together.
     pub fn new(
         spec: &CameraSpec,
         aspect: f64,
         balls: impl Iterator<Item = (DVec3, f64)> + Clone,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, CameraError> {
         let angle = spec.angle.radians();
         if let Some(at) = spec.at {
-            let look_at = spec.look_at.ok_or("a camera with `at` needs `look_at` too")?;
+            let look_at = spec.look_at.ok_or(CameraError::LooksNowhere)?;
             let way = look_at.0 - at.0;
             if way.x == 0.0 && way.y == 0.0 {
-                return Err("a camera must not look straight up or down, or at its own place".to_owned());
+                return Err(CameraError::Upright);
             }
             if angle <= 0.0 {
-                return Err("a camera with `at` needs an `angle` above 0".to_owned());
+                return Err(CameraError::NoAngle);
             }
             let projection = Projection::Perspective { angle };
             return Ok(Self { at: at.0, look_at: look_at.0, projection, aspect });
         }
         if spec.look_at.is_some() {
-            return Err("a camera with `look_at` needs `at` too".to_owned());
+            return Err(CameraError::StandsNowhere);
         }
         let (turn, rise) = (spec.turn.radians(), spec.rise.radians());
         let back = DVec3::new(libm::sin(turn) * libm::cos(rise), -libm::cos(turn) * libm::cos(rise), libm::sin(rise));

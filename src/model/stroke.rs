@@ -3,9 +3,8 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::graph::{Neighbours, Weights};
-use crate::math::DVec2;
-use crate::skeleton::{Skeleton, SkeletonNode};
+use crate::geom::Neighbours;
+use crate::math::{DVec2, Weights};
 
 /// The class of the paths that are a stroke's core; all others are its branches.
 pub const CORE: &str = "main";
@@ -140,18 +139,6 @@ pub struct Piece {
     pub is_core: bool,
 }
 
-/// The segments of skeletons, and whether each belongs to the core: all do where no path is of class [`CORE`].
-pub fn shining<'a>(
-    skeletons: &'a [&'a Skeleton],
-) -> impl Iterator<Item = (&'a SkeletonNode, &'a SkeletonNode, bool)> + 'a {
-    let core = |s: &Skeleton| s.classes.iter().position(|class| class == CORE);
-    let has_core = skeletons.iter().any(|s| core(s).is_some());
-    skeletons.iter().flat_map(move |s| {
-        let core = core(s);
-        s.segments().map(move |(from, to)| (from, to, !has_core || core == Some(to.class as usize)))
-    })
-}
-
 /// An object that shines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stroke {
@@ -164,19 +151,6 @@ pub struct Stroke {
 }
 
 impl Stroke {
-    /// The stroke that `skeletons` are, moved by `offset`.
-    #[must_use]
-    pub fn new(name: &str, skeletons: &[&Skeleton], offset: DVec2, glow: GlowSpec) -> Self {
-        let pieces = shining(skeletons)
-            .map(|(from, to, is_core)| Piece {
-                ends: [from, to].map(|n| n.position.truncate() + offset),
-                radii: [from.radius, to.radius],
-                is_core,
-            })
-            .collect();
-        Self { name: name.to_owned(), pieces, glow }
-    }
-
     /// Moves it.
     pub fn shift(&mut self, by: DVec2) {
         self.pieces.iter_mut().flat_map(|piece| &mut piece.ends).for_each(|end| *end += by);

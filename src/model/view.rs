@@ -29,7 +29,7 @@ pub const BEYOND: f64 = 0.1;
 
 /// A view whose size is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct ViewFrame {
     /// Width and height in scene units.
     pub extent: [f64; 2],
     /// Height of the horizon, in scene units.
@@ -38,7 +38,7 @@ pub struct Frame {
     pub pixel: f64,
 }
 
-impl Frame {
+impl ViewFrame {
     /// The frame of `spec` for a picture of `size` pixels.
     #[must_use]
     pub fn new(spec: &ViewSpec, size: [u32; 2]) -> Self {

@@ -1,8 +1,8 @@
 //! What least-cost paths cost by length.
 
 use super::{Goal, plan};
-use crate::graph::{Graph, Lattice, LatticeError, Node, Weights, Window};
-use crate::math::{Progress, Stream};
+use crate::graph::{Graph, Lattice, LatticeError, Node, Window};
+use crate::math::{Progress, Stream, Weights};
 
 /// How far from the line it is measured, in lattice steps: about where a glow ends. Nearer a step costs more, since paths
 /// have less to choose from, and far away a tenth less.

@@ -54,8 +54,8 @@ pub fn bytes_needed(cells: u64) -> u64 {
 /// Wide fronts are shared among the threads of the current rayon pool ([`Graph::is_wide`]); the result is the same.
 ///
 /// ```
-/// use lichtenberg::graph::{Lattice, Weights, Window};
-/// use lichtenberg::math::{DVec3, Progress, Stream};
+/// use lichtenberg::graph::{Lattice, Window};
+/// use lichtenberg::math::{DVec3, Progress, Stream, Weights};
 /// use lichtenberg::plan::{Goal, plan};
 ///
 /// let window = Window::new(DVec3::ZERO, DVec3::splat(20.0), 1.0, 3)?;

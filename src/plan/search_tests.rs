@@ -7,8 +7,8 @@ use proptest::prelude::*;
 
 use super::search::{Later, plan_on};
 use super::*;
-use crate::graph::{FieldValue, Graph, Lattice, Mask, Node, Weights, Window};
-use crate::math::{DVec3, Progress, Stream};
+use crate::graph::{FieldValue, Graph, Lattice, Mask, Node, Window};
+use crate::math::{DVec3, Progress, Stream, Weights};
 
 type Field = ([bool; 3], fn(DVec3) -> FieldValue);
 

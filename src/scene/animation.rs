@@ -3,8 +3,9 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::mistake::Mistake;
+use super::tree;
 use super::tree::{Entry, Override, Value, apply};
-use super::{Mistake, tree};
 
 /// A value of the scene that changes from frame to frame, when `--frames` asks for them: between keys evenly, before the
 /// first and after the last not at all.

@@ -5,14 +5,16 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::animation::TrackSpec;
+use super::claim::Claim;
+use super::mistake::Mistake;
 use super::tree::Entry;
-use super::{Claim, Mistake, TrackSpec};
-use crate::geom::ShapeSpec;
-use crate::grow::{MarkKind, SpaceSpec, Step, StepSpec};
-use crate::math::{Colour, DVec3, Degrees, Point, Ref};
-use crate::model::{
-    CameraSpec, GlowSpec, GroundSpec, LeavesSpec, LightSpec, Material, PaintSpec, Skin, SkySpec, ThornsSpec, ViewSpec,
-};
+use crate::assemble::LightsSpec;
+use crate::geom::{MarkKind, ShapeSpec};
+use crate::grow::{SpaceSpec, Step, StepSpec};
+use crate::math::{DVec3, Degrees, Point, Ref};
+use crate::model::{CameraSpec, GlowSpec, GroundSpec, LightSpec, Material, SkySpec, ViewSpec};
+use crate::skin::{LeavesSpec, PaintSpec, Skin, ThornsSpec};
 
 /// A scene: named growth steps in named spaces, the objects that they become, and how these are seen.
 ///
@@ -171,21 +173,6 @@ pub struct CopySpec {
     #[serde(default = "whole")]
     #[schemars(range(min = 1e-3, max = 1e3))]
     pub scale: f64,
-}
-
-/// Lights along the limbs of an object: without shadow, evenly spaced along its paths of class `main`.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct LightsSpec {
-    /// How many.
-    #[schemars(range(min = 1, max = 64))]
-    pub count: u32,
-    /// Their colour times their strength, all together.
-    pub colour: Colour,
-    /// Distance over which their light falls off: at it there is as much as they have, far from it `2 (fade / d)^2` of
-    /// that.
-    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
-    pub fade: f64,
 }
 
 fn whole() -> f64 {

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
-use super::Source;
+use super::source::Source;
 
 /// One mistake.
 #[derive(Clone, Debug, PartialEq, Eq)]

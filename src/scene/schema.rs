@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use serde_json::{Map, Value as Json};
 
-use super::Scene;
+use super::document::Scene;
 
 /// The JSON Schema (draft 2020-12) of a scene file.
 pub fn schema() -> &'static Json {

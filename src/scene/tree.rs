@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-use super::Mistake;
+use super::mistake::Mistake;
 
 /// A change to a scene from outside: `--set grow.elm.to.limbs.count=30`.
 #[derive(Clone, Debug, PartialEq, Eq)]

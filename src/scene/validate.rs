@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value as Json};
 
-use super::Mistake;
+use super::mistake::Mistake;
 use super::tree::{Entry, Value};
 use crate::math::unknown;
 

@@ -1,9 +1,10 @@
 //! A model in trees: what a ray meets.
 
-use crate::bvh::{Boxes, Cones, Entry, Ray, RoundCone, Triangle, Triangles};
+use crate::bvh::{Boxes, Cones, Entry, Hit, Ray, RoundCone, Triangle, Triangles};
 use crate::geom::Bounds;
 use crate::math::{DMat3, DVec3};
-use crate::model::{Dome, Frame, Instance, Model, Object, Pose, limb_frames};
+use crate::model::pattern::Expr;
+use crate::model::{Body, Dome, Instance, LimbFrame, Limbs, Mesh, Model, Object, Pose, limb_frames};
 
 /// Rays from surfaces start this far off them, as a share of the world's size: more than single precision loses.
 const OFF: f64 = 2e-5;
@@ -14,7 +15,7 @@ pub struct World<'a> {
     pub model: &'a Model,
     /// The light of the sky.
     pub dome: Dome,
-    shapes: Vec<Shape>,
+    shapes: Vec<Shape<'a>>,
     /// Object and place of each box.
     instances: Vec<(u32, Place)>,
     boxes: Boxes,
@@ -25,13 +26,29 @@ pub struct World<'a> {
 }
 
 /// An object in its own space.
-struct Shape {
+enum Shape<'a> {
+    Limbs(LimbShape<'a>),
+    Mesh(&'a Mesh, Triangles),
+}
+
+/// Round cones.
+struct LimbShape<'a> {
+    limbs: &'a Limbs,
     cones: Cones,
     /// Balls that no segment joins.
     lone: Vec<u32>,
-    triangles: Triangles,
-    /// The axes of limbs, where a pattern needs them.
-    frames: Vec<Frame>,
+    pattern: Option<Laid>,
+}
+
+/// A pattern laid along limbs.
+struct Laid {
+    share: Expr,
+    size: f64,
+    /// Thinner limbs show the mean.
+    least_radius: f64,
+    mean: f64,
+    /// The axes of the limb at each ball.
+    frames: Vec<LimbFrame>,
 }
 
 /// Where an object, or one posed mesh of it, is in the world.
@@ -118,64 +135,108 @@ pub(super) struct Within {
     id: u32,
 }
 
-impl Shape {
-    fn new(object: &Object, has_pattern: bool) -> Self {
-        let mut is_joined = vec![false; object.balls.len()];
-        for &[a, b] in &object.segments {
-            is_joined[a as usize] = true;
-            is_joined[b as usize] = true;
-        }
-        let lone = (0..).zip(&is_joined).filter(|(_, joined)| !**joined).map(|(i, _)| i).collect();
-        let mesh = &object.mesh;
-        let mut shape = Self {
-            cones: Cones::new(0, |_| unreachable!("there is none")),
-            lone,
-            triangles: Triangles::new(mesh.triangles.len(), |i| triangle(object, i)),
-            frames: if has_pattern { limb_frames(object) } else { Vec::new() },
-        };
-        shape.cones = Cones::new(object.segments.len() + shape.lone.len(), |i| shape.cone(object, i as u32).0);
+impl<'a> LimbShape<'a> {
+    fn new(limbs: &'a Limbs, pattern: Option<Laid>) -> Self {
+        let empty = Cones::new(0, |_| unreachable!("there is none"));
+        let mut shape = Self { limbs, cones: empty, lone: limbs.lone(), pattern };
+        shape.cones = Cones::new(shape.count(), |i| shape.cone(i as u32).0);
         shape
     }
 
+    fn count(&self) -> usize {
+        self.limbs.segments.len() + self.lone.len()
+    }
+
     /// The round cone of a hit, and its two balls.
-    fn cone(&self, object: &Object, id: u32) -> (RoundCone, [u32; 2]) {
-        let [a, b] = match object.segments.get(id as usize) {
+    fn cone(&self, id: u32) -> (RoundCone, [u32; 2]) {
+        let [a, b] = match self.limbs.segments.get(id as usize) {
             Some(&segment) => segment,
-            None => [self.lone[id as usize - object.segments.len()]; 2],
+            None => [self.lone[id as usize - self.limbs.segments.len()]; 2],
         };
-        let [from, to] = [a, b].map(|i| &object.balls[i as usize]);
+        let [from, to] = [a, b].map(|i| &self.limbs.balls[i as usize]);
         (RoundCone { a: from.centre, ra: from.radius, b: to.centre, rb: to.radius }, [a, b])
+    }
+
+    /// The share of the pattern at `p`, on the limb of a ball.
+    fn share(&self, ball: u32, p: DVec3) -> f64 {
+        let Some(laid) = &self.pattern else { return 0.0 };
+        if self.limbs.balls[ball as usize].radius < laid.least_radius {
+            return laid.mean;
+        }
+        laid.share.at(laid.frames[ball as usize].local(p) / laid.size)
     }
 }
 
-fn triangle(object: &Object, i: usize) -> Triangle {
-    Triangle(object.mesh.triangles[i].map(|p| object.mesh.points[p as usize]))
+impl<'a> Shape<'a> {
+    fn new(object: &'a Object, model: &Model) -> Self {
+        match &object.body {
+            Body::Limbs(limbs) => {
+                let pattern = model.materials[object.material].1.pattern.map(|pattern| {
+                    let figure = pattern.figure();
+                    Laid {
+                        share: figure.share(),
+                        size: figure.size(),
+                        least_radius: figure.least_radius(),
+                        mean: figure.mean(),
+                        frames: limb_frames(limbs),
+                    }
+                });
+                Self::Limbs(LimbShape::new(limbs, pattern))
+            }
+            Body::Mesh(mesh) | Body::Posed(mesh, _) => {
+                Self::Mesh(mesh, Triangles::new(mesh.triangles.len(), |i| triangle(mesh, i)))
+            }
+        }
+    }
+
+    fn bounds(&self) -> Bounds {
+        match self {
+            Self::Limbs(limbs) => limbs.cones.bounds(),
+            Self::Mesh(_, triangles) => triangles.bounds(),
+        }
+    }
+
+    fn closest(&self, ray: &Ray) -> Option<Hit> {
+        match self {
+            Self::Limbs(limbs) => limbs.cones.closest(ray),
+            Self::Mesh(_, triangles) => triangles.closest(ray),
+        }
+    }
+
+    fn is_blocked(&self, ray: &Ray) -> bool {
+        match self {
+            Self::Limbs(limbs) => limbs.cones.is_blocked(ray),
+            Self::Mesh(_, triangles) => triangles.is_blocked(ray),
+        }
+    }
+}
+
+fn triangle(mesh: &Mesh, i: usize) -> Triangle {
+    Triangle(mesh.triangles[i].map(|p| mesh.points[p as usize]))
 }
 
 impl<'a> World<'a> {
     /// Puts `model` into trees.
     #[must_use]
     pub fn new(model: &'a Model) -> Self {
-        let has_pattern = |object: &Object| model.materials[object.material].1.pattern.is_some();
-        let shapes: Vec<Shape> = model.objects.iter().map(|o| Shape::new(o, has_pattern(o))).collect();
+        let shapes: Vec<Shape<'_>> = model.objects.iter().map(|object| Shape::new(object, model)).collect();
         let mut instances: Vec<(u32, Place)> = Vec::new();
         for (i, object) in (0..).zip(&model.objects) {
             for instance in &object.instances {
-                if object.poses.is_empty() {
-                    instances.push((i, Place::Whole(*instance)));
+                match &object.body {
+                    Body::Posed(_, poses) => {
+                        instances.extend(poses.iter().map(|pose| (i, Place::posed(instance, pose))));
+                    }
+                    Body::Limbs(_) | Body::Mesh(_) => instances.push((i, Place::Whole(*instance))),
                 }
-                instances.extend(object.poses.iter().map(|pose| (i, Place::posed(instance, pose))));
             }
         }
         let boxes: Vec<_> = instances
             .iter()
             .map(|(object, place)| {
-                let shape = &shapes[*object as usize];
-                let own = shape.cones.bounds().union(shape.triangles.bounds());
-                own.corners()
-                    .map(|p| Bounds::of_ball(place.to_world(p), 0.0))
-                    .into_iter()
-                    .fold(Bounds::EMPTY, Bounds::union)
+                let corners = shapes[*object as usize].bounds().corners();
+                let corners = corners.map(|p| Bounds::of_ball(place.to_world(p), 0.0));
+                corners.into_iter().fold(Bounds::EMPTY, Bounds::union)
             })
             .collect();
         let mut next = 0;
@@ -184,7 +245,7 @@ impl<'a> World<'a> {
             .iter()
             .map(|o| {
                 let first = next;
-                next += o.balls.iter().map(|b| b.branch + 1).max().unwrap_or(1);
+                next += o.body.branches();
                 first
             })
             .collect();
@@ -198,8 +259,7 @@ impl<'a> World<'a> {
     pub fn branch_names(&self) -> Vec<String> {
         let mut names = Vec::new();
         for object in &self.model.objects {
-            let count = object.balls.iter().map(|b| b.branch + 1).max().unwrap_or(1);
-            names.extend((0..count).map(|i| format!("{}.{i}", object.name)));
+            names.extend((0..object.body.branches()).map(|i| format!("{}.{i}", object.name)));
         }
         names
     }
@@ -208,13 +268,11 @@ impl<'a> World<'a> {
     pub(super) fn within(&self, p: DVec3) -> Vec<Within> {
         let mut found = Vec::new();
         for (instance, (object, place)) in (0..).zip(&self.instances) {
-            let (shape, own) = (&self.shapes[*object as usize], place.to_own(p));
+            let (Shape::Limbs(shape), own) = (&self.shapes[*object as usize], place.to_own(p)) else { continue };
             let bounds = shape.cones.bounds();
             if own.cmpge(bounds.min).all() && own.cmple(bounds.max).all() {
-                let object = &self.model.objects[*object as usize];
-                let count = (object.segments.len() + shape.lone.len()) as u32;
-                let holds = |id: &u32| shape.cone(object, *id).0.holds(own);
-                found.extend((0..count).filter(holds).map(|id| Within { instance, id }));
+                let holds = |id: &u32| shape.cone(*id).0.holds(own);
+                found.extend((0..shape.count() as u32).filter(holds).map(|id| Within { instance, id }));
             }
         }
         found
@@ -227,47 +285,42 @@ impl<'a> World<'a> {
         if let Some(surface) = &ground {
             ray.far = surface.t;
         }
-        let mut best: Option<(u32, bool, f64, u32)> = None;
+        let mut best: Option<(u32, f64, u32)> = None;
         self.meet(&ray, &mut |instance, far| {
             let (object, place) = &self.instances[instance as usize];
-            let shape = &self.shapes[*object as usize];
-            let (mut own, scale) = place.ray(&Ray { far, ..ray });
-            let start = own;
-            let mut found = |hit: Option<crate::bvh::Hit>, is_mesh: bool| {
-                if let Some(hit) = hit {
-                    own.far = hit.t;
-                    best = Some((instance, is_mesh, hit.t * scale, hit.id));
-                }
-                own
-            };
-            let own = found(shape.cones.closest(&start), false);
-            if !shape.triangles.is_empty() {
-                found(shape.triangles.closest(&own), true);
+            let (own, scale) = place.ray(&Ray { far, ..ray });
+            if let Some(hit) = self.shapes[*object as usize].closest(&own) {
+                best = Some((instance, hit.t * scale, hit.id));
             }
-            best.map_or(far, |b| b.2.min(far))
+            best.map_or(far, |(_, t, _)| t.min(far))
         });
-        let mut surface = match best {
-            Some((instance, true, t, id)) => Some(self.on_mesh(&ray, instance, t, id)),
-            Some((instance, false, t, id)) => {
-                let (object, place) = &self.instances[instance as usize];
-                let (own, _) = place.ray(&ray);
-                let (cone, balls) = self.shapes[*object as usize].cone(&self.model.objects[*object as usize], id);
-                Some(self.on_cone(&ray, instance, t, cone.enter(&own), &cone, balls))
-            }
-            None => ground,
-        };
+        let mut surface = best.map_or(ground, |(instance, t, id)| Some(self.surface(&ray, instance, t, id)));
         for w in within {
             let (object, place) = &self.instances[w.instance as usize];
-            let (cone, balls) = self.shapes[*object as usize].cone(&self.model.objects[*object as usize], w.id);
+            let Shape::Limbs(shape) = &self.shapes[*object as usize] else { continue };
+            let (cone, balls) = shape.cone(w.id);
             let (own, scale) = place.ray(&ray);
             if let Some(entry) = cone.inner(&own)
                 && surface.is_none_or(|s| entry.t * scale < s.t)
             {
-                let inner = self.on_cone(&ray, w.instance, entry.t * scale, Some(entry), &cone, balls);
+                let inner = self.on_cone(&ray, w.instance, entry.t * scale, Some(entry), shape, (&cone, balls));
                 surface = Some(Surface { is_inside: true, ..inner });
             }
         }
         surface
+    }
+
+    /// The surface of a hit.
+    fn surface(&self, ray: &Ray, instance: u32, t: f64, id: u32) -> Surface {
+        let (object, place) = &self.instances[instance as usize];
+        match &self.shapes[*object as usize] {
+            Shape::Mesh(mesh, _) => self.on_mesh(ray, instance, t, id, mesh),
+            Shape::Limbs(shape) => {
+                let (own, _) = place.ray(ray);
+                let (cone, balls) = shape.cone(id);
+                self.on_cone(ray, instance, t, cone.enter(&own), shape, (&cone, balls))
+            }
+        }
     }
 
     /// Does anything that casts shadows stand in the way?
@@ -278,9 +331,8 @@ impl<'a> World<'a> {
             if !self.model.objects[*object as usize].shadow {
                 return far;
             }
-            let shape = &self.shapes[*object as usize];
             let (own, _) = place.ray(ray);
-            met = shape.cones.is_blocked(&own) || (!shape.triangles.is_empty() && shape.triangles.is_blocked(&own));
+            met = self.shapes[*object as usize].is_blocked(&own);
             if met { f64::NEG_INFINITY } else { far }
         });
         met
@@ -321,29 +373,19 @@ impl<'a> World<'a> {
         instance: u32,
         t: f64,
         entry: Option<Entry>,
-        cone: &RoundCone,
-        balls: [u32; 2],
+        shape: &LimbShape<'_>,
+        (cone, balls): (&RoundCone, [u32; 2]),
     ) -> Surface {
         let (index, place) = &self.instances[instance as usize];
-        let object = &self.model.objects[*index as usize];
         let (own, scale) = place.ray(ray);
         // In double precision, unless the two disagree whether it is met at all.
         let (t, normal, share) = match entry {
             Some(entry) => (entry.t * scale, entry.normal, entry.share),
             None => (t, cone.normal_at(own.at(t / scale)), 1.0),
         };
-        let [a, b] = balls.map(|i| &object.balls[i as usize]);
+        let [a, b] = balls.map(|i| &shape.limbs.balls[i as usize]);
         let at = if share > 0.0 { 1 } else { 0 };
-        let pattern = self.shapes[*index as usize].frames.get(balls[at] as usize).map_or(0.0, |frame| {
-            let material = &self.model.materials[object.material].1;
-            let ball = &object.balls[balls[at] as usize];
-            material.pattern.map_or(0.0, |pattern| {
-                if ball.radius < pattern.least_radius() {
-                    return pattern.mean();
-                }
-                pattern.share(frame.local(own.at(t / scale)) / pattern.size())
-            })
-        });
+        let pattern = shape.share(balls[at], own.at(t / scale));
         let normal = place.normal(normal);
         Surface {
             t,
@@ -358,20 +400,20 @@ impl<'a> World<'a> {
         }
     }
 
-    fn on_mesh(&self, ray: &Ray, instance: u32, t: f64, id: u32) -> Surface {
+    fn on_mesh(&self, ray: &Ray, instance: u32, t: f64, id: u32, mesh: &Mesh) -> Surface {
         let (index, place) = &self.instances[instance as usize];
         let object = &self.model.objects[*index as usize];
-        let triangle = triangle(object, id as usize);
+        let triangle = triangle(mesh, id as usize);
         let (own, scale) = place.ray(ray);
         let (t, [v, w]) = match triangle.meet(&own) {
             Some((t, weights)) => (t * scale, weights),
             None => (t, [0.0; 2]),
         };
         let flat = triangle.normal();
-        let corners = object.mesh.triangles[id as usize];
-        let normal = match object.mesh.normals.get(corners[0] as usize) {
+        let corners = mesh.triangles[id as usize];
+        let normal = match mesh.normals.get(corners[0] as usize) {
             Some(&a) => {
-                let [b, c] = [corners[1], corners[2]].map(|i| object.mesh.normals[i as usize]);
+                let [b, c] = [corners[1], corners[2]].map(|i| mesh.normals[i as usize]);
                 (a + (b - a) * v + (c - a) * w).normalize_or(flat)
             }
             None => flat,
@@ -386,7 +428,7 @@ impl<'a> World<'a> {
             cost: 0.0,
             level: 0,
             // Patterns follow limbs; a mesh has none.
-            pattern: self.model.materials[object.material].1.pattern.map_or(0.0, |pattern| pattern.mean()),
+            pattern: self.model.materials[object.material].1.pattern.map_or(0.0, |pattern| pattern.figure().mean()),
             is_inside: false,
         }
     }

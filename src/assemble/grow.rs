@@ -1,0 +1,141 @@
+//! All steps are grown, round after round.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use super::memory::within;
+use super::plants::shape_plants;
+use super::{AssembleError, Recipe, bytes_needed};
+use crate::geom::MarkKind;
+use crate::grow::{Canopy, Context, GrowError, Grown, Regions, Rounds, Step};
+use crate::math::Progress;
+use crate::skeleton::Skeleton;
+
+/// Grows every step of `recipe` within `max_memory` bytes; `show` lists what construction drawings need.
+///
+/// # Errors
+/// [`AssembleError`].
+pub fn grow(
+    recipe: &Recipe,
+    show: &[MarkKind],
+    max_memory: u64,
+    progress: &Progress,
+) -> Result<Vec<Grown>, AssembleError> {
+    within(bytes_needed(recipe), max_memory)?;
+    let grown = recipe.steps.iter().map(|_| None).collect();
+    let mut scene = Scene { recipe, show, max_memory, progress, grown, repeated: BTreeMap::new() };
+    while scene.grown.iter().any(Option::is_none) {
+        scene.grow_round()?;
+    }
+    let mut grown: Vec<Grown> = scene.grown.into_iter().flatten().collect();
+    shape_plants(&recipe.steps, &mut grown);
+    Ok(grown)
+}
+
+/// All steps on their way. A round holds all that wait for nothing that has not grown, and one repetition of each that is
+/// under way; it reads only what the rounds before made.
+struct Scene<'a> {
+    recipe: &'a Recipe,
+    show: &'a [MarkKind],
+    max_memory: u64,
+    progress: &'a Progress,
+    /// What has grown, by step.
+    grown: Vec<Option<Grown>>,
+    /// Repeated steps under way.
+    repeated: BTreeMap<usize, Rounds<'a>>,
+}
+
+impl Scene<'_> {
+    fn grow_round(&mut self) -> Result<(), AssembleError> {
+        let steps = &self.recipe.steps;
+        let is_ready = |i: &usize| {
+            self.grown[*i].is_none()
+                && !self.repeated.contains_key(i)
+                && steps[*i].after().all(|before| self.grown[before].is_some())
+        };
+        let ready: Vec<usize> = (0..steps.len()).filter(is_ready).collect();
+        let earlier: Vec<Option<&Skeleton>> = self.grown.iter().map(|g| g.as_ref().map(|g| &g.skeleton)).collect();
+        let context = Context { seed: self.recipe.seed, grown: &earlier, show: self.show, progress: self.progress };
+        let mut round = Vec::new();
+        for i in ready {
+            match Rounds::begin(&steps[i], &context)? {
+                Some(rounds) => drop(self.repeated.insert(i, rounds)),
+                None => round.push(i),
+            }
+        }
+        let world: Vec<&Skeleton> =
+            earlier.iter().copied().flatten().chain(self.repeated.values().map(Rounds::skeleton)).collect();
+        let canopies: Vec<Vec<Canopy>> = self
+            .repeated
+            .values()
+            .map(|rounds| rounds.clumps().map(|clump| Canopy::new(&world, clump)).collect())
+            .collect();
+        let groups = groups(steps, round);
+        let finished = self.grow_groups(&groups, &context)?;
+        for (rounds, canopies) in self.repeated.values_mut().zip(&canopies) {
+            rounds.advance(canopies, self.show, self.max_memory, self.progress)?;
+        }
+        let finished = groups.into_iter().flatten().zip(finished.into_iter().flatten());
+        let finished: Vec<(usize, Grown)> = finished.collect();
+        finished.into_iter().for_each(|(i, step)| self.grown[i] = Some(step));
+        self.finish_repeated()
+    }
+
+    /// Grows groups of steps, side by side where memory allows; the result is the same.
+    fn grow_groups(&self, groups: &[Vec<usize>], context: &Context<'_>) -> Result<Vec<Vec<Grown>>, AssembleError> {
+        let steps = groups.iter().flatten().map(|&i| &self.recipe.steps[i]);
+        let needed: Vec<u64> = steps.map(|step| step.bytes_needed_from(context.grown)).collect();
+        within(needed.iter().copied().max().unwrap_or(0), self.max_memory)?;
+        let grow = |group: &Vec<usize>| self.grow_group(group, context);
+        let grown: Result<_, GrowError> = if needed.iter().sum::<u64>() <= self.max_memory {
+            groups.par_iter().map(grow).collect()
+        } else {
+            groups.iter().map(grow).collect()
+        };
+        Ok(grown?)
+    }
+
+    /// Grows steps that belong together.
+    fn grow_group(&self, group: &[usize], context: &Context<'_>) -> Result<Vec<Grown>, GrowError> {
+        let solids = |i: usize| self.grown[i].as_ref()?.regions.as_ref().map(Regions::solid);
+        let all = &self.recipe.steps;
+        let steps: Vec<Cow<'_, Step>> = group
+            .iter()
+            .map(|&i| match all[i].solids().is_empty() {
+                true => Cow::Borrowed(&all[i]),
+                false => Cow::Owned(all[i].with_solids(&solids)),
+            })
+            .collect();
+        let steps: Vec<&Step> = steps.iter().map(AsRef::as_ref).collect();
+        let before = (0..all.len()).filter(|&i| all[i].shares_space(steps[0]));
+        let before: Vec<(&Step, &Skeleton)> = before.filter_map(|i| Some((&all[i], context.grown[i]?))).collect();
+        steps[0].method.grow_together(&steps, &before, context)
+    }
+
+    /// Takes repeated steps that are done out of the rounds.
+    fn finish_repeated(&mut self) -> Result<(), AssembleError> {
+        let done: Vec<usize> = self.repeated.iter().filter(|(_, rounds)| rounds.is_done()).map(|(&i, _)| i).collect();
+        for i in done {
+            if let Some(rounds) = self.repeated.remove(&i) {
+                let earlier: Vec<Option<&Skeleton>> =
+                    self.grown.iter().map(|g| g.as_ref().map(|g| &g.skeleton)).collect();
+                self.grown[i] = Some(rounds.finish(&earlier)?);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Those in the same voxels grow together, the others alone.
+fn groups(steps: &[Step], round: Vec<usize>) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for i in round {
+        match groups.iter_mut().find(|group| steps[group[0]].shares_space(&steps[i])) {
+            Some(group) => group.push(i),
+            None => groups.push(vec![i]),
+        }
+    }
+    groups
+}

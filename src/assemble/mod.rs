@@ -1,0 +1,19 @@
+//! The way from a recipe to a model: steps are grown, skeletons get their skins, the camera is set.
+//!
+//! Later stages need never handle a scene's own units or names: the model stands on its own. Everything here can be
+//! cancelled.
+
+mod dress;
+mod error;
+mod grow;
+mod lights;
+mod memory;
+mod model;
+mod plants;
+mod recipe;
+
+pub use error::{AssembleError, ObjectKey, ObjectProblem};
+pub use grow::grow;
+pub use memory::bytes_needed;
+pub use model::model;
+pub use recipe::{Backdrop, LeavesRecipe, LightsSpec, ObjectRecipe, Recipe};

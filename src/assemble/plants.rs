@@ -1,0 +1,70 @@
+//! Plants that several steps grew together get their widths and their form.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use crate::grow::{Grown, Step};
+use crate::math::DVec3;
+use crate::skeleton::{Part, Plant, Skeleton};
+
+/// Gives plants, which several steps grew together, their widths and their form.
+pub(super) fn shape_plants(steps: &[Step], grown: &mut [Grown]) {
+    // The step where each step's plant starts.
+    let base = |mut i: usize| loop {
+        match steps[i].width.starts_plant() {
+            Some(false) => i = *steps[i].sources().first()?,
+            Some(true) => return Some(i),
+            None => return None,
+        }
+    };
+    let mut plants: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    // In the order of growth: what a step grows from comes before it.
+    let mut depth = vec![0; steps.len()];
+    for _ in 0..steps.len() {
+        for i in 0..steps.len() {
+            depth[i] = steps[i].sources().iter().map(|&from| depth[from] + 1).max().unwrap_or(0);
+        }
+    }
+    let mut order: Vec<usize> = (0..steps.len()).collect();
+    order.sort_by_key(|&i| (depth[i], i));
+    for i in order {
+        if let Some(base) = base(i) {
+            plants.entry(base).or_default().push(i);
+        }
+    }
+    let feet: Vec<(usize, Option<DVec3>)> = plants
+        .iter()
+        .flat_map(|(&base, members)| {
+            let foot = grown[base].skeleton.nodes.first().map(|node| node.position);
+            members.iter().map(move |&i| (i, foot))
+        })
+        .collect();
+    let shaped: Vec<(Vec<usize>, Vec<Skeleton>)> = plants
+        .into_par_iter()
+        .map(|(base, members)| {
+            let parts: Vec<Part<'_>> = members
+                .iter()
+                .map(|&i| Part {
+                    skeleton: &grown[i].skeleton,
+                    width: &steps[i].width,
+                    first_level: grown[i].first_level,
+                })
+                .collect();
+            let mut plant = Plant::new(&parts);
+            plant.thicken(&steps[base].width);
+            if let Some(form) = &steps[base].form {
+                plant.shape(form, &steps[base].width);
+            }
+            (members, plant.split())
+        })
+        .collect();
+    for (members, skeletons) in shaped {
+        for (i, mut skeleton) in members.into_iter().zip(skeletons) {
+            skeleton.classes.clone_from(&steps[i].classes);
+            skeleton.number_branches();
+            grown[i].skeleton = skeleton;
+        }
+    }
+    feet.into_iter().for_each(|(i, foot)| grown[i].foot = foot);
+}

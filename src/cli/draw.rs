@@ -1,0 +1,180 @@
+//! One picture: traced, shone, drawn, or by an outside renderer.
+
+use std::fs;
+use std::path::Path;
+use std::time::Instant;
+
+use super::args::{Look, RenderArgs, Renderer};
+use super::console::Console;
+use super::error::Failure;
+use super::jobs::{Job, Jobs};
+use super::preview::{Drawn, samples, shine, trace, view};
+use super::write::{note_patterns, read_templates, write_pov, write_rib};
+use crate::export::{Origin, Pov, Rib, RibOptions, RibShadows, SvgOptions, Templates, write_svg};
+use crate::files::{Rgba, decode_png, draw_svg};
+use crate::geom::MarkKind;
+use crate::math::Progress;
+use crate::model::Model;
+use crate::render::{Povray, RibRenderer};
+use crate::scene::Loaded;
+
+pub fn report(path: &Path, job: &Job, scene: &Loaded, begun: Instant, console: &Console) {
+    if console.json {
+        console.result(&serde_json::json!({
+            "file": path,
+            "scene": job.name(),
+            "seed": scene.recipe.seed,
+            "size": scene.recipe.size,
+            "seconds": begun.elapsed().as_secs_f64(),
+        }));
+    } else {
+        console.line(&path.display().to_string());
+    }
+}
+
+/// Options that say how rays are traced mean nothing where light is drawn.
+fn refuse_tracing(args: &RenderArgs) -> Result<(), Failure> {
+    let given = [
+        ("--samples", args.samples.is_some()),
+        ("--crop", args.crop.is_some()),
+        ("--transparent", args.transparent),
+        ("--look exact", args.look == Look::Exact),
+    ];
+    match given.iter().find(|(_, is_given)| *is_given) {
+        Some((option, _)) => Err(Failure::Usage(format!(
+            "{option} is for scenes that are traced; this one has a [view], where light is drawn"
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// The picture of one scene.
+#[allow(clippy::too_many_arguments, reason = "a scene, how it is drawn, and who listens")]
+pub fn draw(
+    args: &RenderArgs,
+    jobs: &Jobs,
+    job: &Job,
+    scene: &Loaded,
+    data: bool,
+    threads: Option<usize>,
+    console: &Console,
+    progress: &Progress,
+) -> Result<Drawn, Failure> {
+    if args.schematic {
+        return draw_schematic(args, jobs, scene, console, progress);
+    }
+    if scene.recipe.view.is_some() && args.with.is_none() {
+        refuse_tracing(args)?;
+        let model = jobs.model(scene, &[], console, progress)?;
+        return shine(scene, &model.strokes, jobs.max_memory(), progress).map(Drawn::Shone);
+    }
+    // What is wrong with the call is said before long work.
+    let view = view(args, scene.recipe.size, data, jobs.max_memory())?;
+    let model = jobs.model(scene, &[], console, progress)?;
+    let Some(with) = args.with else { return trace(&model, &view, progress) };
+    let templates = read_templates(args.templates.as_deref())?;
+    let folder = tempfile::Builder::new()
+        .prefix("lichtenberg-")
+        .tempdir()
+        .map_err(|e| Failure::Usage(format!("cannot make a folder for the renderer's files: {e}")))?;
+    let size = scene.recipe.size;
+    let origin = job.origin(scene.recipe.seed, "render");
+    let renderer = match with {
+        Renderer::Povray => None,
+        Renderer::Pixie => Some(RibRenderer::Pixie),
+        Renderer::Aqsis => Some(RibRenderer::Aqsis),
+    };
+    let picture = if let Some(renderer) = renderer {
+        if args.look == Look::Studio {
+            console.note("note: RIB shows the exact look; the studio look is the preview's and POV-Ray's");
+        }
+        render_rib(renderer, &model, &templates, folder.path(), size, &origin, console, progress)?
+    } else {
+        let pov = Pov::new(&model, &templates, SCENE, size, &origin);
+        let povray = Povray {
+            size,
+            crop: view.crop,
+            samples: libm::round(libm::sqrt(f64::from(samples(args)))) as u32,
+            declare: (args.look == Look::Exact).then(|| format!("{}=1", pov.exact())),
+            threads,
+        };
+        render_pov(&pov, &povray, folder.path(), console, progress)?
+    };
+    Ok(Drawn::Screen(cut(&picture, view.crop)))
+}
+
+/// What files of renderers are called.
+const SCENE: &str = "scene";
+
+/// A drawing of the construction, or black strokes on white.
+fn draw_schematic(
+    args: &RenderArgs,
+    jobs: &Jobs,
+    scene: &Loaded,
+    console: &Console,
+    progress: &Progress,
+) -> Result<Drawn, Failure> {
+    let marks: Vec<MarkKind> = args.show.iter().filter_map(|&s| s.mark()).collect();
+    let marks = if marks.is_empty() { scene.show.clone() } else { marks };
+    let model = jobs.model(scene, &marks, console, progress)?;
+    let mut svg = Vec::new();
+    write_svg(&model, SvgOptions { size: scene.recipe.size }, &mut svg)
+        .map_err(|e| Failure::Usage(format!("cannot draw the schematic: {e}")))?;
+    draw_svg(&String::from_utf8_lossy(&svg), &[]).map(Drawn::Screen).map_err(|e| Failure::Usage(e.to_string()))
+}
+
+/// The picture of POV-Ray.
+fn render_pov(
+    pov: &Pov<'_>,
+    povray: &Povray,
+    folder: &Path,
+    console: &Console,
+    progress: &Progress,
+) -> Result<Rgba, Failure> {
+    write_pov(pov, folder, SCENE, true)?;
+    let rendered = povray.render(folder, "scene.pov", "scene.png", progress)?;
+    for warning in &rendered.warnings {
+        console.note(&format!("povray: {warning}"));
+    }
+    let wrong = |e: String| Failure::Outside(format!("povray's picture cannot be read: {e}"));
+    let picture = fs::read(folder.join("scene.png")).map_err(|e| wrong(e.to_string()))?;
+    decode_png(&picture).map_err(|e| wrong(e.to_string()))
+}
+
+/// The picture of a renderer that reads RIB.
+#[allow(clippy::too_many_arguments, reason = "a model, where it goes, and who listens")]
+fn render_rib(
+    renderer: RibRenderer,
+    model: &Model,
+    templates: &Templates,
+    folder: &Path,
+    size: [u32; 2],
+    origin: &Origin,
+    console: &Console,
+    progress: &Progress,
+) -> Result<Rgba, Failure> {
+    let shadows = match renderer {
+        RibRenderer::Pixie => RibShadows::Rays,
+        RibRenderer::Aqsis => RibShadows::Maps,
+    };
+    let rib = Rib::new(model, templates, "scene", size, origin, RibOptions { shadows, displace: false });
+    note_patterns(&rib, console);
+    write_rib(&rib, folder, "scene", false, true)?;
+    renderer.render(folder, "scene.rib", "scene.tif", progress)?;
+    let wrong = |e: String| Failure::Outside(format!("{}'s picture cannot be read: {e}", renderer.program()));
+    let bytes = fs::read(folder.join("scene.tif")).map_err(|e| wrong(e.to_string()))?;
+    let picture = decode_png(&bytes).map_err(wrong)?;
+    if picture.bytes.chunks_exact(4).all(|pixel| pixel[..3] == picture.bytes[..3]) {
+        return Err(wrong("it is blank".to_owned()));
+    }
+    Ok(picture)
+}
+
+/// A part of a picture: left, top, width, height.
+fn cut(picture: &Rgba, [left, top, width, height]: [u32; 4]) -> Rgba {
+    let rows = (top..top + height).flat_map(|y| {
+        let from = (y as usize * picture.width as usize + left as usize) * 4;
+        picture.bytes[from..from + width as usize * 4].iter().copied()
+    });
+    Rgba { width, height, bytes: rows.collect() }
+}

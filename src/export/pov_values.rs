@@ -1,0 +1,300 @@
+//! What the templates of POV-Ray may ask for.
+
+use serde::Serialize;
+
+use super::Origin;
+use super::decimal::{number, vector};
+use super::identifier::{identifier, part_identifier, plain};
+use super::pov_text::{PLAIN, colour, to_pov};
+use crate::math::DVec3;
+use crate::model::{
+    Body, Camera, Digits, Dome, FADE, Ground, Instance, Light, Material, Model, Pattern, Projection, Sky,
+};
+
+/// With more primitives than this the scene takes the objects inline, since `object { Name }` copies a union.
+const MOST_COPIED: usize = 1_000_000;
+/// Lights that stand for the sky in the studio look: more take longer, fewer show as separate shadows.
+const DOME: u32 = 96;
+
+/// What the templates may ask for.
+#[derive(Serialize)]
+pub(super) struct Values {
+    version: &'static str,
+    pub stem: String,
+    pub prefix: String,
+    title: String,
+    command: String,
+    seed: u64,
+    width: u32,
+    height_pixels: u32,
+    height: String,
+    inline: bool,
+    extent: String,
+    pub objects: Vec<ObjectValues>,
+    pub materials: Vec<MaterialValues>,
+    camera: CameraValues,
+    lights: Vec<LightValues>,
+    /// Towards the light, and its colour: the sky of the studio look.
+    dome: Vec<[String; 2]>,
+    sky: SkyValues,
+    ground: Option<GroundValues>,
+}
+
+#[derive(Serialize)]
+pub(super) struct ObjectValues {
+    pub id: String,
+    height: String,
+    foot: String,
+    /// What follows the object where it stands, after the first, which is at its foot.
+    places: Vec<String>,
+    keyword: &'static str,
+    shadow: bool,
+    texture: String,
+    /// What is declared once and posed, if it is: its mesh.
+    one: Option<String>,
+    body: String,
+}
+
+#[derive(Serialize)]
+pub(super) struct MaterialValues {
+    pub id: String,
+    colour: String,
+    ambient: String,
+    diffuse: String,
+    emission: String,
+    specular: String,
+    roughness: String,
+    phong: String,
+    phong_size: String,
+    pattern: Option<PatternValues>,
+}
+
+#[derive(Serialize)]
+struct PatternValues {
+    function: String,
+    colour: String,
+    size: String,
+    /// The material's colour where it is too thin for the pattern.
+    mean: String,
+}
+
+#[derive(Serialize)]
+struct CameraValues {
+    kind: &'static str,
+    location: String,
+    look_at: String,
+    angle: Option<String>,
+    width: Option<String>,
+}
+
+#[derive(Serialize)]
+struct LightValues {
+    location: String,
+    colour: String,
+    /// The colour in the studio look.
+    studio: String,
+    parallel: bool,
+    across: Option<String>,
+    /// Distance over which it falls off.
+    fade: Option<String>,
+    shadow: bool,
+}
+
+#[derive(Serialize)]
+struct SkyValues {
+    horizon: String,
+    zenith: Option<String>,
+    /// How far its picture is turned, in degrees; without one it is a gradient.
+    turn: Option<String>,
+}
+
+#[derive(Serialize)]
+struct GroundValues {
+    height: String,
+    colour: String,
+    ambient: String,
+    diffuse: String,
+    reach: String,
+    fade: String,
+    radius: Option<String>,
+}
+
+/// What stands for the body of object `i` in a filled-in template; no scene text can contain it.
+fn body_mark(i: usize) -> String {
+    format!("\u{1}{i}\u{1}")
+}
+
+/// What stands for the mesh of object `i`, declared on its own.
+fn mesh_mark(i: usize) -> String {
+    format!("\u{1}m{i}\u{1}")
+}
+
+/// The values of `model`, whose files and declarations are called `name`.
+pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin) -> Values {
+    let prefix = identifier(name);
+    let bounds = model.bounds();
+    let extent = if bounds.is_empty() { 1.0 } else { bounds.size().max_element() };
+    let digits = Digits::for_size(extent);
+    let point = |p: DVec3| vector(to_pov(p), digits);
+    let dome = Dome::new(model).lights(DOME).into_iter();
+    Values {
+        version: env!("CARGO_PKG_VERSION"),
+        stem: plain(name),
+        title: plain(&model.title),
+        command: plain(&origin.command),
+        seed: origin.seed,
+        width: size[0],
+        height_pixels: size[1],
+        height: number(bounds.max.z.max(0.0), digits),
+        inline: model.primitives() > MOST_COPIED && model.objects.iter().all(|o| o.instances.len() == 1),
+        extent: number(extent * 100.0, digits),
+        objects: object_values(model, &prefix),
+        materials: model
+            .materials
+            .iter()
+            .map(|(name, material)| material_values(material_id(&prefix, name), material))
+            .collect(),
+        camera: camera_values(&model.camera, digits),
+        lights: model.lights.iter().map(|light| light_values(light, extent, &point)).collect(),
+        dome: dome.map(|(towards, c)| [vector(to_pov(towards), PLAIN), colour(c)]).collect(),
+        sky: sky_values(&model.sky),
+        ground: model.ground.as_ref().map(|ground| ground_values(ground, digits)),
+        prefix,
+    }
+}
+
+fn material_id(prefix: &str, name: &str) -> String {
+    format!("{prefix}_{}_Texture", identifier(name))
+}
+
+fn object_values(model: &Model, prefix: &str) -> Vec<ObjectValues> {
+    let mut ids: Vec<String> = Vec::new();
+    for object in &model.objects {
+        let is_alone = model.objects.len() == 1;
+        ids.push(if is_alone { prefix.to_owned() } else { part_identifier(prefix, &object.name, &ids) });
+    }
+    let values = model.objects.iter().zip(ids).enumerate().map(|(i, (object, id))| {
+        let (name, material) = &model.materials[object.material];
+        let texture = material_id(prefix, name);
+        ObjectValues {
+            id,
+            height: number(object.body.height(), object.digits),
+            foot: vector(to_pov(object.instances[0].at), object.digits),
+            places: object.instances[1..].iter().map(|place| placed(place, object.digits)).collect(),
+            keyword: keyword(&object.body),
+            shadow: object.shadow,
+            texture: if material.pattern.is_some() { format!("{texture}_Plain") } else { texture },
+            one: matches!(object.body, Body::Posed(..)).then(|| mesh_mark(i)),
+            body: body_mark(i),
+        }
+    });
+    values.collect()
+}
+
+fn material_values(id: String, m: &Material) -> MaterialValues {
+    MaterialValues {
+        id,
+        colour: colour(m.colour),
+        ambient: number(m.ambient, PLAIN),
+        diffuse: number(m.diffuse, PLAIN),
+        emission: number(m.emission, PLAIN),
+        specular: number(m.specular, PLAIN),
+        roughness: number(m.roughness, PLAIN),
+        phong: number(m.phong, PLAIN),
+        phong_size: number(m.phong_size, PLAIN),
+        pattern: m.pattern.as_ref().map(|pattern| pattern_values(m, pattern)),
+    }
+}
+
+fn camera_values(camera: &Camera, digits: Digits) -> CameraValues {
+    let (kind, angle, width) = match camera.projection {
+        Projection::Perspective { angle } => {
+            ("perspective", Some(number(angle * 180.0 / std::f64::consts::PI, PLAIN)), None)
+        }
+        Projection::Parallel { width } => ("orthographic", None, Some(number(width, digits))),
+    };
+    let [location, look_at] = [camera.at, camera.look_at].map(|p| vector(to_pov(p), digits));
+    CameraValues { kind, location, look_at, angle, width }
+}
+
+fn sky_values(sky: &Sky) -> SkyValues {
+    let horizon = colour(sky.at_horizon());
+    match sky {
+        Sky::Gradient { zenith, .. } => SkyValues { horizon, zenith: Some(colour(*zenith)), turn: None },
+        // POV-Ray's pictures begin along +x, ours end along -x.
+        Sky::Picture { turn, .. } => SkyValues { horizon, zenith: None, turn: Some(number(180.0 - turn, PLAIN)) },
+    }
+}
+
+fn ground_values(ground: &Ground, digits: Digits) -> GroundValues {
+    GroundValues {
+        height: number(ground.height, digits),
+        colour: colour(ground.material.colour),
+        ambient: number(ground.material.ambient, PLAIN),
+        diffuse: number(ground.material.diffuse, PLAIN),
+        reach: number(ground.reach, digits),
+        fade: number(FADE, PLAIN),
+        radius: ground.radius.map(|radius| number(radius, digits)),
+    }
+}
+
+fn light_values(light: &Light, extent: f64, point: &dyn Fn(DVec3) -> String) -> LightValues {
+    match *light {
+        Light::Sun { towards, colour: c, size, shadow } => {
+            let distance = extent * 100.0;
+            let wide = 2.0 * distance * libm::tan(size * 0.5);
+            LightValues {
+                location: point(towards * distance),
+                colour: colour(c),
+                studio: colour(light.studio()),
+                parallel: true,
+                across: (size > 0.0 && shadow).then(|| number(wide, PLAIN)),
+                fade: None,
+                shadow,
+            }
+        }
+        Light::Point { at, colour: c, shadow, fade } => LightValues {
+            location: point(at),
+            colour: colour(c),
+            studio: colour(light.studio()),
+            parallel: false,
+            across: None,
+            fade: fade.map(|fade| number(fade, PLAIN)),
+            shadow,
+        },
+    }
+}
+
+/// An object's further place, as what follows its name.
+fn placed(place: &Instance, digits: Digits) -> String {
+    let mut text = String::new();
+    if place.scale != 1.0 {
+        text.push_str(&format!("scale {} ", number(place.scale, PLAIN)));
+    }
+    if place.turn != 0.0 {
+        // Left-handed: the other way around.
+        text.push_str(&format!("rotate {}*y ", number(-place.turn, PLAIN)));
+    }
+    format!("{text}translate {}", vector(to_pov(place.at), digits))
+}
+
+/// A union of fewer than two objects warns.
+fn keyword(body: &Body) -> &'static str {
+    let parts = match body {
+        Body::Limbs(limbs) => limbs.balls.len() + limbs.segments.len(),
+        Body::Mesh(_) => 1,
+        Body::Posed(_, poses) => poses.len(),
+    };
+    if parts < 2 { "object" } else { "union" }
+}
+
+/// A pattern as POV-Ray's own functions.
+fn pattern_values(material: &Material, pattern: &Pattern) -> PatternValues {
+    let figure = pattern.figure();
+    PatternValues {
+        function: figure.share().to_string(),
+        colour: colour(figure.colour()),
+        size: number(figure.size(), PLAIN),
+        mean: colour(material.mean_colour()),
+    }
+}

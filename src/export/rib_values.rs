@@ -1,0 +1,187 @@
+//! What the template of RIB may ask for.
+
+use serde::Serialize;
+
+use super::Origin;
+use super::decimal::plain_number as number;
+use super::identifier::plain;
+use super::rib_options::{RibOptions, RibShadows};
+use super::rib_sheets::{Sheet, sheets};
+use super::rib_text::{PLAIN, colour, to_camera, triple};
+use crate::geom::Bounds;
+use crate::math::DVec3;
+use crate::model::{Camera, Digits, Light, Model, Projection};
+
+/// Pixels along a side of a shadow map.
+const MAP: u32 = 2048;
+
+/// What the template may ask for.
+#[derive(Serialize)]
+pub(super) struct Values {
+    version: &'static str,
+    stem: String,
+    title: String,
+    command: String,
+    seed: u64,
+    width: u32,
+    height: u32,
+    camera: CameraValues,
+    lights: Vec<LightValues>,
+    maps: Vec<MapValues>,
+    /// Sky and ground.
+    sheets: Vec<Sheet>,
+    /// Are shadows traced?
+    rays: bool,
+    /// What the maps show: the end of the name of an archive.
+    casters: &'static str,
+}
+
+#[derive(Serialize)]
+struct CameraValues {
+    fov: Option<String>,
+    window: String,
+    clipping: String,
+    matrix: String,
+}
+
+#[derive(Serialize)]
+struct LightValues {
+    shader: &'static str,
+    intensity: String,
+    colour: String,
+    from: String,
+    to: Option<String>,
+    map: Option<String>,
+}
+
+#[derive(Serialize)]
+struct MapValues {
+    light: String,
+    size: u32,
+    stem: String,
+    window: String,
+    clipping: String,
+    matrix: String,
+}
+
+/// The values of `model`, whose files are called `name`.
+pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin, options: RibOptions) -> Values {
+    let bounds = model.bounds();
+    let extent = if bounds.is_empty() { 1.0 } else { bounds.size().max_element() };
+    let digits = Digits::for_size(extent);
+    let sheets = sheets(model, size, digits);
+    let stem = plain(name);
+    let mut lights = Vec::new();
+    let mut maps = Vec::new();
+    for (i, light) in model.lights.iter().enumerate() {
+        let (values, map) = light_values(&stem, i, light, bounds, digits, options.shadows);
+        lights.push(values);
+        maps.extend(map);
+    }
+    Values {
+        version: env!("CARGO_PKG_VERSION"),
+        title: plain(&model.title),
+        command: plain(&origin.command),
+        seed: origin.seed,
+        width: size[0],
+        height: size[1],
+        camera: camera_values(&model.camera, bounds, extent, &sheets, digits),
+        lights,
+        maps,
+        sheets,
+        rays: options.shadows == RibShadows::Rays,
+        casters: if has_casters(model, options) { "casters" } else { "archive" },
+        stem,
+    }
+}
+
+fn camera_values(camera: &Camera, bounds: Bounds, extent: f64, sheets: &[Sheet], digits: Digits) -> CameraValues {
+    let frame = camera.frame();
+    // Everything in front of the camera, sky and ground included, with room to spare.
+    let far = bounds.corners().map(|p| (p - camera.at).dot(frame[2])).into_iter().fold(extent, f64::max);
+    let far = sheets.iter().map(|sheet| sheet.far).fold(far, f64::max) * 1.01;
+    let (fov, window) = match camera.projection {
+        Projection::Perspective { angle } => {
+            let shorter = libm::tan(angle * 0.5) * f64::min(1.0, 1.0 / camera.aspect);
+            let fov = 2.0 * libm::atan(shorter) * 180.0 / std::f64::consts::PI;
+            (Some(number(fov, PLAIN)), String::new())
+        }
+        Projection::Parallel { width } => {
+            let [across, up] = [width * 0.5, width * 0.5 / camera.aspect].map(|x| number(x, digits));
+            (None, format!("-{across} {across} -{up} {up}"))
+        }
+    };
+    CameraValues {
+        fov,
+        window,
+        clipping: format!("{} {}", number(extent * 1e-3, digits), number(far, digits)),
+        matrix: to_camera(camera.at, frame, digits),
+    }
+}
+
+/// A light, and the shadow map that it needs.
+fn light_values(
+    stem: &str,
+    i: usize,
+    light: &Light,
+    bounds: Bounds,
+    digits: Digits,
+    shadows: RibShadows,
+) -> (LightValues, Option<MapValues>) {
+    match *light {
+        Light::Sun { towards, colour: c, shadow, .. } => {
+            let needs_map = shadow && shadows == RibShadows::Maps && !bounds.is_empty();
+            let map = needs_map.then(|| map_values(stem, i, towards, bounds, digits));
+            let light = LightValues {
+                shader: match shadows {
+                    RibShadows::Rays if shadow => "raydistant",
+                    RibShadows::Maps if shadow => "shadowdistant",
+                    _ => "distantlight",
+                },
+                intensity: "1".to_owned(),
+                colour: colour(c),
+                from: triple(towards, PLAIN),
+                to: Some("0 0 0".to_owned()),
+                map: map.as_ref().map(|map| format!("{}.shad", map.stem)),
+            };
+            (light, map)
+        }
+        Light::Point { at, colour: c, fade, .. } => {
+            // Theirs fall off with the square of the distance from 1 on: right far away; without a falloff, right in the
+            // middle of the scene.
+            let reach = fade.map_or((at - bounds.centre()).length(), |fade| fade * libm::sqrt(2.0));
+            let light = LightValues {
+                shader: "pointlight",
+                intensity: number(reach * reach, PLAIN),
+                colour: colour(c),
+                from: triple(at, digits),
+                to: None,
+                map: None,
+            };
+            (light, None)
+        }
+    }
+}
+
+/// Do shadow maps need an archive of their own, since some objects cast no shadow?
+pub(super) fn has_casters(model: &Model, options: RibOptions) -> bool {
+    options.shadows == RibShadows::Maps && model.objects.iter().any(|object| !object.shadow)
+}
+
+/// A shadow map: the scene as a sun sees it.
+fn map_values(stem: &str, i: usize, towards: DVec3, bounds: Bounds, digits: Digits) -> MapValues {
+    let centre = bounds.centre();
+    let radius = bounds.size().length() * 0.5 * 1.02;
+    let eye = centre + towards * (radius * 2.0);
+    let upright = if towards.z.abs() > 0.99 { DVec3::Y } else { DVec3::Z };
+    let right = (-towards).cross(upright).normalize();
+    let half = number(radius, digits);
+    MapValues {
+        light: format!("light {}", i + 1),
+        size: MAP,
+        stem: format!("{stem}-light{}", i + 1),
+        window: format!("-{half} {half} -{half} {half}"),
+        clipping: format!("{} {}", number(radius * 0.9, digits), number(radius * 3.1, digits)),
+        matrix: to_camera(eye, [right, right.cross(-towards), -towards], digits),
+    }
+}

@@ -1,0 +1,31 @@
+//! Marks of construction drawings.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::math::DVec3;
+
+/// A kind of mark in a construction drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MarkKind {
+    /// A dot a node of the graph.
+    Nodes,
+    /// A line an edge.
+    Edges,
+    /// A ring an endpoint, a disc a generator.
+    Endpoints,
+    /// Outlines of the space, of what it forbids, and of where endpoints are placed.
+    Shapes,
+    /// Lines of equal path cost; in space, on the upright plane through the first generator.
+    Contours,
+}
+
+/// One mark: a polyline, or a dot where it has a single point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    /// What it stands for.
+    pub kind: MarkKind,
+    /// Its points, in scene units.
+    pub line: Vec<DVec3>,
+}

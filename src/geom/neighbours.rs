@@ -1,0 +1,133 @@
+//! The neighbourhoods of regular lattices.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// How many neighbours a lattice node has: 4 or 8 in the plane, 6, 18 or 26 in space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(try_from = "u32", into = "u32")]
+#[schemars(extend("enum" = [4, 8, 6, 18, 26]))]
+pub struct Neighbours(u32);
+
+/// Half of the 26 directions: the positive one of each pair, shorter first.
+const POSITIVE: [[i32; 3]; 13] = [
+    [1, 0, 0],
+    [0, 1, 0],
+    [0, 0, 1],
+    [1, 1, 0],
+    [1, -1, 0],
+    [1, 0, 1],
+    [1, 0, -1],
+    [0, 1, 1],
+    [0, 1, -1],
+    [1, 1, 1],
+    [1, 1, -1],
+    [1, -1, 1],
+    [1, -1, -1],
+];
+
+impl Neighbours {
+    /// All eight around a node of the plane.
+    pub const EIGHT: Self = Self(8);
+
+    /// The neighbourhood of `count`, or `None` if there is none.
+    #[must_use]
+    pub const fn new(count: u32) -> Option<Self> {
+        match count {
+            4 | 8 | 6 | 18 | 26 => Some(Self(count)),
+            _ => None,
+        }
+    }
+
+    /// Neighbours of a node that is not at the border.
+    #[must_use]
+    pub const fn count(self) -> u32 {
+        self.0
+    }
+
+    /// 2 for a plane lattice, 3 for one in space.
+    #[must_use]
+    pub const fn dimensions(self) -> u32 {
+        if matches!(self.0, 4 | 8) { 2 } else { 3 }
+    }
+
+    /// The step of each of the `N` slots: opposite steps in pairs, the positive one first.
+    ///
+    /// # Panics
+    /// When `N` is not a neighbourhood; in a constant, that is an error of compilation.
+    #[must_use]
+    pub const fn steps<const N: usize>() -> [[i32; 3]; N] {
+        let mut steps = [[0; 3]; N];
+        let (mut slot, mut i) = (0, 0);
+        while i < POSITIVE.len() {
+            let [x, y, z] = POSITIVE[i];
+            let changes = x.abs() + y.abs() + z.abs();
+            let belongs = match N {
+                4 => z == 0 && changes == 1,
+                8 => z == 0,
+                6 => changes == 1,
+                18 => changes <= 2,
+                26 => true,
+                _ => panic!("N is not a neighbourhood"),
+            };
+            if belongs {
+                steps[slot] = [x, y, z];
+                steps[slot + 1] = [-x, -y, -z];
+                slot += 2;
+            }
+            i += 1;
+        }
+        assert!(slot == N);
+        steps
+    }
+}
+
+impl TryFrom<u32> for Neighbours {
+    type Error = String;
+
+    fn try_from(count: u32) -> Result<Self, String> {
+        Self::new(count).ok_or_else(|| format!("{count} is not one of 4, 8 (2D), 6, 18, 26 (3D)"))
+    }
+}
+
+impl From<Neighbours> for u32 {
+    fn from(neighbours: Neighbours) -> Self {
+        neighbours.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn opposite_slots_are_pairs() {
+        fn check<const N: usize>() {
+            let steps = Neighbours::steps::<N>();
+            for slot in 0..N {
+                assert_eq!(steps[slot ^ 1], steps[slot].map(|c| -c));
+                assert!(Neighbours::new(N as u32).is_some());
+            }
+        }
+        check::<4>();
+        check::<8>();
+        check::<6>();
+        check::<18>();
+        check::<26>();
+        assert!(Neighbours::new(7).is_none());
+    }
+}
+
+/// Calls a function that is generic over the number of neighbours, by a value of it.
+macro_rules! with_neighbours {
+    ($neighbours:expr, $function:ident($($argument:expr),* $(,)?)) => {
+        match $neighbours.count() {
+            4 => $function::<4>($($argument),*),
+            8 => $function::<8>($($argument),*),
+            6 => $function::<6>($($argument),*),
+            18 => $function::<18>($($argument),*),
+            _ => $function::<26>($($argument),*),
+        }
+    };
+}
+pub(crate) use with_neighbours;

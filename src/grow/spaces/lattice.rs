@@ -1,0 +1,153 @@
+//! Spaces with a regular lattice, and the lattice that one becomes.
+
+use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::geom::{Neighbours, Shape};
+use crate::graph::{CostField, Lattice, LatticeError, Mask, Window};
+use crate::grow::grown::NODE_BYTES;
+use crate::math::{DVec3, Stream, Weights};
+use crate::plan;
+
+/// A regular lattice: its nodes are the multiples of the spacing within the shape.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LatticeSpec {
+    /// Distance between neighbours along an axis, in scene units.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+    pub spacing: f64,
+    /// 4 or 8 neighbours in the plane, 6, 18 or 26 in space; longer edges cost in proportion.
+    pub neighbours: Neighbours,
+}
+
+/// A regular lattice in a shape.
+#[derive(Clone, Debug)]
+pub struct LatticeSpace {
+    /// Where nodes are.
+    pub shape: Shape,
+    /// Where none are.
+    pub forbid: Option<Shape>,
+    /// The window onto the infinite lattice around the shape.
+    pub window: Window,
+    /// How nodes are joined.
+    pub neighbours: Neighbours,
+    /// The random part of the weights.
+    pub weights: Weights,
+    /// The rest of them.
+    pub fields: Vec<CostField>,
+    /// Name of the random stream.
+    pub stream: String,
+}
+
+impl LatticeSpace {
+    /// Every shape in it, to change.
+    pub(in crate::grow) fn shapes_mut(&mut self) -> Vec<&mut Shape> {
+        let fields = self.fields.iter_mut().filter_map(CostField::shape_mut);
+        std::iter::once(&mut self.shape).chain(&mut self.forbid).chain(fields).collect()
+    }
+
+    /// The window around `shape`.
+    ///
+    /// # Errors
+    /// As [`Window::new`].
+    pub fn window(shape: &Shape, spacing: f64, neighbours: Neighbours) -> Result<Window, LatticeError> {
+        let bounds = shape.bounds();
+        Window::new(bounds.min, bounds.max, spacing, neighbours.dimensions())
+    }
+
+    /// Index of the coordinate that points up: y in the plane, z in space.
+    #[must_use]
+    pub fn up(&self) -> usize {
+        if self.neighbours.dimensions() == 2 { 1 } else { 2 }
+    }
+
+    /// May paths pass through `p`?
+    #[must_use]
+    pub fn is_open(&self, p: DVec3) -> bool {
+        // Nodes on the surface belong to the shape, whatever rounding says.
+        let slack = self.window.spacing * 1e-6;
+        self.shape.distance(p) <= slack && !self.forbid.as_ref().is_some_and(|f| f.contains(p))
+    }
+
+    fn is_masked(&self) -> bool {
+        self.forbid.is_some() || !self.shape.is_box()
+    }
+
+    fn varies(&self) -> [bool; 3] {
+        let mut varies = [false; 3];
+        for field in &self.fields {
+            for (axis, v) in field.varies().into_iter().enumerate() {
+                varies[axis] |= v && (axis < 2 || self.up() == 2);
+            }
+        }
+        varies
+    }
+
+    /// Bytes that planning in it takes at its peak.
+    #[must_use]
+    pub fn bytes_needed(&self) -> u64 {
+        let nodes = self.window.nodes();
+        let varies = self.varies();
+        let table: u64 = (0..3).map(|axis| if varies[axis] { u64::from(self.window.size[axis]) } else { 1 }).product();
+        // A field table has 8 bytes an entry, made from samples of 16.
+        let fields = if self.fields.is_empty() { 0 } else { table * 24 };
+        let mask = if self.is_masked() { nodes / 8 } else { 0 };
+        (plan::bytes_needed(nodes) + mask).max(nodes / 8 + fields) + fields / 3
+    }
+
+    /// Bytes that planning so many paths in it takes, where a method keeps `each` bytes of every node beside the search.
+    #[must_use]
+    pub fn bytes_with_paths(&self, paths: u64, each: u64) -> u64 {
+        let nodes = self.window.nodes();
+        let across: u64 = self.window.size.iter().map(|&s| u64::from(s)).sum();
+        // Paths share most of their nodes; they can never have more than the lattice has.
+        let skeleton = paths.saturating_mul(across).min(nodes) * NODE_BYTES;
+        self.bytes_needed().saturating_add(skeleton).saturating_add(nodes.saturating_mul(each))
+    }
+
+    /// The lattice of a scene with this seed. `N` is the number of neighbours.
+    ///
+    /// # Errors
+    /// [`LatticeError`] when no node is open or weights are out of range.
+    pub fn lattice<const N: usize>(&self, seed: u64) -> Result<Lattice<N>, LatticeError> {
+        let mask = self.is_masked().then(|| self.mask());
+        if mask.as_ref().is_some_and(|mask| mask.open() == 0) {
+            return Err(LatticeError::Empty);
+        }
+        self.lattice_in(self.window, &self.stream, seed, mask)
+    }
+
+    /// A lattice with the weights and fields of this space, but its own window, random stream and mask.
+    ///
+    /// # Errors
+    /// [`LatticeError::Weights`] where weights are out of range.
+    pub(in crate::grow) fn lattice_in<const N: usize>(
+        &self,
+        window: Window,
+        stream: &str,
+        seed: u64,
+        mask: Option<Mask>,
+    ) -> Result<Lattice<N>, LatticeError> {
+        debug_assert_eq!(N as u32, self.neighbours.count());
+        let field = (!self.fields.is_empty()).then(|| (self.varies(), |p| CostField::combine(&self.fields, p)));
+        Lattice::new(window, &Stream::new(seed, &format!("space/{stream}")), self.weights, field, mask)
+    }
+
+    fn mask(&self) -> Mask {
+        let [x, y, _] = self.window.size.map(u64::from);
+        let nodes = self.window.nodes();
+        let words = (0..nodes.div_ceil(64))
+            .into_par_iter()
+            .map(|word| {
+                (0..64).fold(0_u64, |bits, bit| {
+                    let cell = word * 64 + bit;
+                    let at = [cell % x, cell / x % y, cell / (x * y)].map(|c| c as u32);
+                    let blocked = cell < nodes && !self.is_open(self.window.position(at));
+                    bits | u64::from(blocked) << bit
+                })
+            })
+            .collect();
+        Mask::from_words(words, nodes as usize)
+    }
+}

@@ -1,0 +1,22 @@
+//! What a pattern offers.
+
+use super::expr::Expr;
+use crate::math::Colour;
+
+/// A kind of pattern.
+pub trait Figure {
+    /// The colour drawn over the material's own.
+    fn colour(&self) -> Colour;
+
+    /// The unit of its coordinates, in scene units.
+    fn size(&self) -> f64;
+
+    /// Limbs below this radius, in scene units, show the pattern's mean alone.
+    fn least_radius(&self) -> f64;
+
+    /// Its mean share, from 0 to 1.
+    fn mean(&self) -> f64;
+
+    /// The share of its colour at a place, from 0 to 1.
+    fn share(&self) -> Expr;
+}

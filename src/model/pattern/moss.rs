@@ -1,0 +1,54 @@
+//! Moss on the upper side of limbs.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::expr::{Expr, Wave, waves};
+use super::figure::Figure;
+use crate::math::Colour;
+
+/// Moss on the upper side of the limb.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Moss {
+    /// Colour of the moss.
+    pub colour: Colour,
+    /// Size of its patches, in scene units.
+    #[schemars(range(min = 1e-6, max = 1e6))]
+    pub size: f64,
+}
+
+/// Moss is where the upper side's share and this sum are above a threshold.
+const PATCHES: [Wave; 3] = [
+    Wave { along: [2.3, 1.9, 0.7], phase: 0.2, bend: 1.2, by: [-1.1, 0.8, 1.6] },
+    Wave { along: [-1.1, 2.1, 2.2], phase: 2.3, bend: 1.1, by: [1.7, 0.9, -0.6] },
+    Wave { along: [1.2, -2.4, 1.8], phase: 5.2, bend: 1.3, by: [0.8, 1.5, 1.2] },
+];
+// The weight of the patches, that of the upper side, and the threshold.
+const PATCH: f64 = 0.3;
+const UPPER: f64 = 0.9;
+const LEAST: f64 = 0.45;
+
+impl Figure for Moss {
+    fn colour(&self) -> Colour {
+        self.colour
+    }
+
+    fn size(&self) -> f64 {
+        self.size
+    }
+
+    fn least_radius(&self) -> f64 {
+        0.0
+    }
+
+    fn mean(&self) -> f64 {
+        0.0
+    }
+
+    fn share(&self) -> Expr {
+        let across = Expr::from(1e-6).max((Expr::X * Expr::X + Expr::Z * Expr::Z).sqrt());
+        let share = waves(&PATCHES) * PATCH + Expr::X / across * UPPER - LEAST;
+        Expr::from(1.0).min(Expr::from(0.0).max(share))
+    }
+}

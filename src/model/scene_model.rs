@@ -1,0 +1,50 @@
+//! A scene as renderers see it.
+
+use super::{Camera, Ground, Light, Material, Object, Sky, Stroke};
+use crate::geom::{Bounds, Mark};
+use crate::math::DVec3;
+
+/// A scene as renderers see it.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// The scene's title.
+    pub title: String,
+    /// Is everything in the plane y = 0, seen from the front?
+    pub is_flat: bool,
+    /// What was grown.
+    pub objects: Vec<Object>,
+    /// What objects are made of; [`Object::material`] is an index.
+    pub materials: Vec<(String, Material)>,
+    /// The view.
+    pub camera: Camera,
+    /// What lights it.
+    pub lights: Vec<Light>,
+    /// The ground, if any.
+    pub ground: Option<Ground>,
+    /// What is behind everything.
+    pub sky: Sky,
+    /// Construction drawings, in world space.
+    pub marks: Vec<Mark>,
+    /// What shines in a flat scene with a view, in scene space.
+    pub strokes: Vec<Stroke>,
+}
+
+impl Model {
+    /// A box around all objects.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        self.objects.iter().map(Object::bounds).fold(Bounds::EMPTY, Bounds::union)
+    }
+
+    /// How many spheres, cones and triangles there are, once for each object.
+    #[must_use]
+    pub fn primitives(&self) -> usize {
+        self.objects.iter().map(|object| object.body.primitives()).sum()
+    }
+}
+
+/// World space from a scene's own: in the plane, y is up; the world has z up.
+#[must_use]
+pub fn to_world(p: DVec3, is_flat: bool) -> DVec3 {
+    if is_flat { DVec3::new(p.x, 0.0, p.y) } else { p }
+}

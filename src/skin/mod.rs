@@ -1,0 +1,25 @@
+//! Skins: from skeletons to bodies, and what stands on them.
+//!
+//! Later stages need never handle a skeleton: limbs are round cones or triangles, leaves are posed meshes.
+
+mod cones;
+mod isosurface;
+mod leaf_mesh;
+mod leaves;
+mod levels;
+mod paint;
+mod spec;
+mod strokes;
+mod thorns;
+mod tubes;
+
+pub use cones::{cones, spheres};
+pub use isosurface::{Distance, IsosurfaceError, IsosurfaceSpec, isosurface};
+pub use leaf_mesh::{OutlineError, ball_mesh, leaf_mesh};
+pub use leaves::{LeafLight, LeavesSpec};
+pub use levels::by_level;
+pub use paint::{PaintSpec, Painting, painted};
+pub use spec::{Skin, foot, surface_mesh};
+pub use strokes::{shining, stroke};
+pub use thorns::ThornsSpec;
+pub use tubes::tubes;

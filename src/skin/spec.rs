@@ -1,0 +1,42 @@
+//! Skins as a scene names them.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::IsosurfaceSpec;
+use crate::geom::Surface;
+use crate::math::DVec3;
+use crate::model::{Mesh, to_world};
+use crate::skeleton::Skeleton;
+
+/// How a skeleton becomes solid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Skin {
+    /// A sphere at each node, with more between them until they overlap (Xu and Mould 2008, section 4).
+    Spheres,
+    /// A round cone along each segment: the frustum tangent to the spheres at its ends, and these.
+    #[default]
+    Cones,
+    /// One smooth surface of triangles around limbs that are joined where one leaves another, with places for a texture
+    /// around and along them. Copies share it, and its leaves, which a union of cones does not in POV-Ray.
+    Mesh,
+    /// One surface around all that is no farther from the limbs than their width (2007, section 3.3).
+    Isosurface(IsosurfaceSpec),
+    /// Of steps by regions: their borders, an object each (2007, section 3.4).
+    Surface,
+}
+
+/// A closed surface as a mesh from `foot`, with smooth normals; in a flat scene its filled area.
+#[must_use]
+pub fn surface_mesh(surface: &Surface, foot: DVec3, is_flat: bool) -> Mesh {
+    let points = surface.points.iter().map(|&p| to_world(p - foot, is_flat)).collect();
+    let normals = if is_flat { Vec::new() } else { surface.normals() };
+    Mesh { points, normals, triangles: surface.triangles.clone(), uvs: Vec::new() }
+}
+
+/// The foot of an object made of `skeletons`: their first root.
+#[must_use]
+pub fn foot(skeletons: &[&Skeleton]) -> Option<DVec3> {
+    skeletons.iter().find_map(|s| s.nodes.first()).map(|node| node.position)
+}
