@@ -4,7 +4,7 @@
 
 mod bounds;
 mod closed_mesh;
-mod cubes;
+mod marching_cubes;
 mod occupancy;
 mod outline;
 mod profile;
@@ -17,7 +17,7 @@ mod voxels;
 
 pub use bounds::Bounds;
 pub use closed_mesh::ClosedMesh;
-pub use cubes::{Surface, fill, vertex_normals};
+pub use marching_cubes::{Surface, fill, vertex_normals};
 pub use occupancy::Occupancy;
 pub use outline::{Outline, simplified};
 pub use profile::Profile;
