@@ -1,44 +1,34 @@
-//! Isosurfaces by marching cubes whose cubes agree on every face: closed, consistently oriented 2-manifolds (Lorensen and
-//! Cline 1987; what surfaces do on a face follows from that face's corners alone).
+//! Isosurfaces by marching cubes (Lorensen and Cline 1987). Ambiguous faces are resolved by their own four corners alone, so
+//! that neighbouring cubes agree: the surface is a closed, consistently oriented 2-manifold.
 
 use std::sync::OnceLock;
 
-use earcut::Earcut;
+use super::Surface;
+use crate::math::DVec3;
 
-use crate::math::{DVec2, DVec3};
+/// Least distance of a vertex from the samples, as a share of a grid step: no triangle is degenerate.
+const CLEARANCE: f64 = 0.02;
 
-/// A surface of triangles, counterclockwise seen from outside.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Surface {
-    /// Corners.
-    pub points: Vec<DVec3>,
-    /// Three corners each.
-    pub triangles: Vec<[u32; 3]>,
-}
-
-/// Crossings stay this far, as a share of a step, from the samples: no triangle is without area.
-const CLEAR: f64 = 0.02;
-
-/// The cube's three axes, and for each the other two.
+/// The other two axes of each axis.
 const OTHERS: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
 
-/// How a cube with given corners is cut: triangles of its edges; 12 is a point of its own in the middle of a loop.
+/// The triangulation of a cube with given corners inside. A vertex is named by the cube's edge on which it lies.
 #[derive(Clone, Debug, Default)]
 struct Case {
     /// The edges that are cut.
     edges: Vec<u8>,
-    /// Loops that need a point in their middle, as edges.
+    /// Loops that are triangulated as a fan about a vertex in their middle.
     fans: Vec<Vec<u8>>,
-    /// Triangles of edges.
+    /// Triangles.
     triangles: Vec<[u8; 3]>,
 }
 
-/// The corner with these coordinates, 0 or 1.
+/// The number of the corner with these coordinates, 0 or 1.
 fn corner(at: [usize; 3]) -> usize {
     at[0] | at[1] << 1 | at[2] << 2
 }
 
-/// The edge along `axis` from the corner with these coordinates; that along the axis does not matter.
+/// The number of the edge along `axis` through the corner `at`.
 fn edge(axis: usize, at: [usize; 3]) -> u8 {
     let [b, c] = OTHERS[axis];
     (axis * 4 + at[b] + 2 * at[c]) as u8
@@ -71,7 +61,7 @@ fn share_face(a: u8, b: u8) -> bool {
     on(a).iter().any(|face| on(b).contains(face))
 }
 
-/// The case of these corners, a bit each.
+/// The triangulation for the corners inside, a bit each.
 fn case(corners: u8) -> Case {
     let is_in = |at: [usize; 3]| corners >> corner(at) & 1 == 1;
     let mut next = [None::<u8>; 12];
@@ -82,7 +72,7 @@ fn case(corners: u8) -> Case {
             edge(axis, a)
         };
         for i in 0..4 {
-            // Every run of corners inside is cut off on its own, so that those inside are joined along edges alone.
+            // On an ambiguous face each run of inside corners is cut off separately: they are joined along edges only.
             if !is_in(ring[i]) && is_in(ring[(i + 1) % 4]) {
                 let leaves = (1..4).find(|&j| !is_in(ring[(i + 1 + j) % 4])).unwrap_or(3);
                 next[usize::from(between(i))] = Some(between(i + leaves));
@@ -104,7 +94,7 @@ fn case(corners: u8) -> Case {
             at = next[usize::from(at)].unwrap_or(start);
         }
         let n = ring.len();
-        // A diagonal on a face might be drawn by the cube behind it too.
+        // No diagonal lies on a face: the neighbouring cube might have the same one.
         let is_free = |from: usize| (2..n - 1).all(|i| !share_face(ring[from], ring[(from + i) % n]));
         match (0..n).find(|&from| is_free(from)) {
             Some(from) => {
@@ -121,10 +111,108 @@ fn cases() -> &'static [Case; 256] {
     CASES.get_or_init(|| Box::new(std::array::from_fn(|corners| case(corners as u8))))
 }
 
+/// Two neighbouring layers of samples, a bit each, with a sample outside on every side.
+struct Layers {
+    /// Samples along x and y, without those outside.
+    size: [usize; 2],
+    /// Words of a row.
+    words: usize,
+    /// The lower and the upper layer.
+    bits: [Vec<u64>; 2],
+}
+
+impl Layers {
+    fn new(size: [usize; 2]) -> Self {
+        let words = (size[0] + 2).div_ceil(64);
+        let layer = || vec![0_u64; words * (size[1] + 2)];
+        Self { size, words, bits: [layer(), layer()] }
+    }
+
+    /// The upper layer becomes the lower one; `is_inside` tells of the next, `None` is the one beyond the last.
+    fn advance(&mut self, is_inside: Option<impl Fn(usize, usize) -> bool>) {
+        self.bits.swap(0, 1);
+        let upper = &mut self.bits[1];
+        upper.fill(0);
+        let Some(is_inside) = is_inside else { return };
+        for y in 0..self.size[1] {
+            let row = &mut upper[self.words * (y + 1)..self.words * (y + 2)];
+            for x in 0..self.size[0] {
+                row[(x + 1) / 64] |= u64::from(is_inside(x, y)) << ((x + 1) % 64);
+            }
+        }
+    }
+
+    /// Visits the cubes of row `y` that have corners inside and outside, with those inside as bits; 64 cubes at a time.
+    fn for_each_cut(&self, y: usize, mut visit: impl FnMut(usize, u8)) {
+        let words = self.words;
+        let rows = [0, 1, 2, 3].map(|i| &self.bits[i / 2][words * (y + i % 2)..words * (y + i % 2 + 1)]);
+        for word in 0..words {
+            let own = rows.map(|row| row[word]);
+            let after = rows.map(|row| row[word] >> 1 | row.get(word + 1).map_or(0, |&w| w << 63));
+            let any = own.iter().chain(&after).fold(0, |all, &w| all | w);
+            let all = own.iter().chain(&after).fold(u64::MAX, |all, &w| all & w);
+            let mut mixed = any & !all;
+            while mixed != 0 {
+                let bit = mixed.trailing_zeros() as usize;
+                mixed &= mixed - 1;
+                let x = word * 64 + bit;
+                if x > self.size[0] {
+                    break;
+                }
+                let corners = (0..4).fold(0, |corners, row| {
+                    let pair = (own[row] >> bit & 1) | (after[row] >> bit & 1) << 1;
+                    corners | (pair as u8) << (2 * row)
+                });
+                visit(x, corners);
+            }
+        }
+    }
+}
+
+/// The vertices on the edges between two layers of samples, by the lower sample of each edge; `u32::MAX` where there is none.
+struct EdgeVertices {
+    /// Samples of a row, with those outside.
+    row: usize,
+    /// On edges along x and y in the lower and the upper layer.
+    flat: [[Vec<u32>; 2]; 2],
+    /// On edges along z.
+    upright: Vec<u32>,
+}
+
+impl EdgeVertices {
+    fn new(size: [usize; 2]) -> Self {
+        let none = || vec![u32::MAX; (size[0] + 2) * (size[1] + 2)];
+        Self { row: size[0] + 2, flat: [[none(), none()], [none(), none()]], upright: none() }
+    }
+
+    /// The upper layer becomes the lower one.
+    fn advance(&mut self) {
+        self.flat.swap(0, 1);
+        for table in self.flat[1].iter_mut().chain([&mut self.upright]) {
+            table.fill(u32::MAX);
+        }
+    }
+
+    /// The vertex on the edge along `axis` from the corner `low` of the cube in row `y` at `x`.
+    fn at(&mut self, axis: usize, [x, y]: [usize; 2], low: [usize; 3]) -> &mut u32 {
+        let place = x + low[0] + self.row * (y + low[1]);
+        if axis == 2 { &mut self.upright[place] } else { &mut self.flat[low[2]][axis][place] }
+    }
+}
+
+/// The axis of an edge, and its lower corner.
+fn edge_start(edge: u8) -> (usize, [usize; 3]) {
+    let axis = usize::from(edge / 4);
+    let mut low = [0; 3];
+    let [b, c] = OTHERS[axis];
+    (low[b], low[c]) = (usize::from(edge & 1), usize::from(edge >> 1 & 1));
+    (axis, low)
+}
+
 impl Surface {
-    /// The surface between samples inside and outside on a grid of `size` samples, in steps of the grid from its first
-    /// sample. `is_inside` tells of a sample; all beyond the grid are outside. `crossing` tells how far the surface is from
-    /// a sample inside, as a share of the step to the neighbour along the axis that is outside, up (`true`) or down.
+    /// The isosurface between samples inside and outside on a grid of `size` samples, in grid steps from its first sample.
+    /// Beyond the grid everything is outside. `crossing` is the distance of the surface from a sample inside, as a share of
+    /// the step to its neighbour outside: along an axis, upwards (`true`) or downwards.
     #[must_use]
     pub fn extract(
         size: [u32; 3],
@@ -132,219 +220,57 @@ impl Surface {
         crossing: impl Fn([u32; 3], usize, bool) -> f64,
     ) -> Self {
         let [nx, ny, nz] = size.map(|s| s as usize);
-        let mut points: Vec<DVec3> = Vec::new();
-        let mut triangles = Vec::new();
-        // Bits of two layers of samples, with one outside on each side; and the points on their edges.
-        let words = (nx + 2).div_ceil(64);
-        let mut layers = [vec![0_u64; words * (ny + 2)], vec![0_u64; words * (ny + 2)]];
-        let none = || vec![u32::MAX; (nx + 2) * (ny + 2)];
-        // Along x and y in the lower and the upper layer, and along z between them.
-        let mut flat = [[none(), none()], [none(), none()]];
-        let mut upright = none();
+        let mut surface = Self::default();
+        let mut layers = Layers::new([nx, ny]);
+        let mut vertices = EdgeVertices::new([nx, ny]);
         for z in 0..=nz {
-            layers.swap(0, 1);
-            flat.swap(0, 1);
-            layers[1].fill(0);
-            for y in 0..if z < nz { ny } else { 0 } {
-                let row = &mut layers[1][words * (y + 1)..words * (y + 2)];
-                for x in 0..nx {
-                    let bit = u64::from(is_inside([x as u32, y as u32, z as u32]));
-                    row[(x + 1) / 64] |= bit << ((x + 1) % 64);
-                }
-            }
-            for table in flat[1].iter_mut().chain([&mut upright]) {
-                table.fill(u32::MAX);
-            }
+            layers.advance((z < nz).then_some(|x: usize, y: usize| is_inside([x as u32, y as u32, z as u32])));
+            vertices.advance();
             for y in 0..=ny {
-                let rows = [0, 1, 2, 3].map(|i| &layers[i / 2][words * (y + i % 2)..words * (y + i % 2 + 1)]);
-                for word in 0..words {
-                    let own = rows.map(|row| row[word]);
-                    let after = rows.map(|row| row[word] >> 1 | row.get(word + 1).map_or(0, |&w| w << 63));
-                    let any = own.iter().chain(&after).fold(0, |all, &w| all | w);
-                    let all = own.iter().chain(&after).fold(u64::MAX, |all, &w| all & w);
-                    let mut mixed = any & !all;
-                    while mixed != 0 {
-                        let bit = mixed.trailing_zeros() as usize;
-                        mixed &= mixed - 1;
-                        let x = word * 64 + bit;
-                        if x > nx {
-                            break;
+                layers.for_each_cut(y, |x, corners| {
+                    let case = &cases()[usize::from(corners)];
+                    let mut cut = [0; 12];
+                    for &e in &case.edges {
+                        let (axis, low) = edge_start(e);
+                        let known = vertices.at(axis, [x, y], low);
+                        if *known == u32::MAX {
+                            *known = surface.points.len() as u32;
+                            let up = corners >> corner(low) & 1 == 1;
+                            surface.points.push(vertex(axis, [x + low[0], y + low[1], z + low[2]], up, &crossing));
                         }
-                        let corners = (0..4).fold(0, |corners, row| {
-                            let pair = (own[row] >> bit & 1) | (after[row] >> bit & 1) << 1;
-                            corners | (pair as u8) << (2 * row)
-                        });
-                        let case = &cases()[usize::from(corners)];
-                        let mut cut = [0; 12];
-                        for &e in &case.edges {
-                            let axis = usize::from(e / 4);
-                            let mut low = [0; 3];
-                            let [b, c] = OTHERS[axis];
-                            (low[b], low[c]) = (usize::from(e & 1), usize::from(e >> 1 & 1));
-                            let place = x + low[0] + (nx + 2) * (y + low[1]);
-                            let known = if axis == 2 { &mut upright[place] } else { &mut flat[low[2]][axis][place] };
-                            if *known == u32::MAX {
-                                *known = points.len() as u32;
-                                let up = corners >> corner(low) & 1 == 1;
-                                let mut inside = [x + low[0], y + low[1], z + low[2]];
-                                inside[axis] += usize::from(!up);
-                                // Samples of the grid begin at 1 here.
-                                let share = crossing(inside.map(|c| c as u32 - 1), axis, up).clamp(CLEAR, 1.0 - CLEAR);
-                                let mut p = DVec3::from_array(inside.map(|c| c as f64 - 1.0));
-                                p[axis] += if up { share } else { -share };
-                                points.push(p);
-                            }
-                            cut[usize::from(e)] = *known;
-                        }
-                        triangles.extend(case.triangles.iter().map(|t| t.map(|e| cut[usize::from(e)])));
-                        for ring in &case.fans {
-                            let middle = points.len() as u32;
-                            let at = |e: &u8| cut[usize::from(*e)];
-                            let sum: DVec3 = ring.iter().map(|e| points[at(e) as usize]).sum();
-                            points.push(sum / ring.len() as f64);
-                            let sides = ring.iter().zip(ring.iter().cycle().skip(1));
-                            triangles.extend(sides.map(|(a, b)| [middle, at(a), at(b)]));
-                        }
+                        cut[usize::from(e)] = *known;
                     }
-                }
+                    surface.add_case(case, &cut);
+                });
             }
         }
-        Self { points, triangles }
+        surface
     }
 
-    /// Every point moved by `place`.
-    #[must_use]
-    pub fn map(mut self, place: impl Fn(DVec3) -> DVec3) -> Self {
-        self.points.iter_mut().for_each(|p| *p = place(*p));
-        self
-    }
-
-    /// The normal of each point: the mean of those around it, by area.
-    #[must_use]
-    pub fn normals(&self) -> Vec<DVec3> {
-        vertex_normals(&self.points, &self.triangles)
-    }
-
-    /// The volume within, negative where it is turned inside out.
-    #[must_use]
-    pub fn volume(&self) -> f64 {
-        let sixfold = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|i| self.points[i as usize]);
-            a.dot(b.cross(c))
-        };
-        self.triangles.iter().map(sixfold).sum::<f64>() / 6.0
-    }
-
-    /// The area of all triangles.
-    #[must_use]
-    pub fn area(&self) -> f64 {
-        let twice = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|i| self.points[i as usize]);
-            (b - a).cross(c - a).length()
-        };
-        self.triangles.iter().map(twice).sum::<f64>() * 0.5
-    }
-
-    /// Smooths away the steps of the grid, keeping the volume nearly: `rounds` of a step towards the mean of the
-    /// neighbours and a larger one back (Taubin 1995).
-    pub fn smooth(&mut self, rounds: u32) {
-        const STEPS: [f64; 2] = [0.5, -0.53];
-        for step in (0..rounds).flat_map(|_| STEPS) {
-            let mut sums = vec![(DVec3::ZERO, 0_u32); self.points.len()];
-            // Each edge of a closed surface is met twice, once in each direction.
-            for t in &self.triangles {
-                for i in 0..3 {
-                    let sum = &mut sums[t[i] as usize];
-                    *sum = (sum.0 + self.points[t[(i + 1) % 3] as usize], sum.1 + 1);
-                }
-            }
-            for (p, (sum, count)) in self.points.iter_mut().zip(sums) {
-                if count > 0 {
-                    *p += (sum / f64::from(count) - *p) * step;
-                }
-            }
+    /// Adds the triangles of a cube whose edges have the vertices `cut`.
+    fn add_case(&mut self, case: &Case, cut: &[u32; 12]) {
+        self.triangles.extend(case.triangles.iter().map(|t| t.map(|e| cut[usize::from(e)])));
+        for ring in &case.fans {
+            let middle = self.points.len() as u32;
+            let at = |e: &u8| cut[usize::from(*e)];
+            let sum: DVec3 = ring.iter().map(|e| self.points[at(e) as usize]).sum();
+            self.points.push(sum / ring.len() as f64);
+            let sides = ring.iter().zip(ring.iter().cycle().skip(1));
+            self.triangles.extend(sides.map(|(a, b)| [middle, at(a), at(b)]));
         }
-    }
-
-    /// Is every edge shared by exactly two triangles that run along it in opposite directions, are the triangles around
-    /// every point one ring, and has no triangle the same corner twice? What [`Surface::extract`] yields is.
-    #[must_use]
-    pub fn is_closed_manifold(&self) -> bool {
-        let mut edges: Vec<[u32; 2]> =
-            self.triangles.iter().flat_map(|t| (0..3).map(|i| [t[i], t[(i + 1) % 3]])).collect();
-        edges.sort_unstable();
-        let is_once = edges.windows(2).all(|pair| pair[0] != pair[1]);
-        let is_paired = edges.iter().all(|&[a, b]| a != b && edges.binary_search(&[b, a]).is_ok());
-        // Around each point the triangles lead from one neighbour to the next.
-        let mut corners: Vec<[u32; 3]> =
-            self.triangles.iter().flat_map(|t| (0..3).map(|i| [t[i], t[(i + 1) % 3], t[(i + 2) % 3]])).collect();
-        corners.sort_unstable();
-        is_once
-            && is_paired
-            && corners.chunk_by(|a, b| a[0] == b[0]).all(|around| {
-                let mut at = around[0][1];
-                let next = |at: u32| around.binary_search_by_key(&at, |c| c[1]).ok().map(|i| around[i][2]);
-                (1..=around.len()).all(|count| {
-                    at = next(at).unwrap_or(u32::MAX);
-                    (at == around[0][1]) == (count == around.len())
-                })
-            })
     }
 }
 
-/// The normal of each of `points`, of length 1: the mean of those of the `triangles` around it, by area.
-#[must_use]
-pub fn vertex_normals(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
-    let mut normals = vec![DVec3::ZERO; points.len()];
-    for triangle in triangles {
-        let [a, b, c] = triangle.map(|i| points[i as usize]);
-        let normal = (b - a).cross(c - a);
-        triangle.iter().for_each(|&i| normals[i as usize] += normal);
-    }
-    normals.into_iter().map(|n| n.normalize_or(DVec3::Z)).collect()
-}
-
-/// What `rings` enclose, as triangles of the plane: outer ones run counterclockwise, holes the other way.
-#[must_use]
-pub fn fill(rings: &[Vec<DVec2>]) -> Surface {
-    let area = |ring: &[DVec2]| {
-        let after = ring.iter().cycle().skip(1);
-        ring.iter().zip(after).map(|(a, b)| a.perp_dot(*b)).sum::<f64>()
-    };
-    let contains = |ring: &[DVec2], p: DVec2| {
-        let after = ring.iter().cycle().skip(1);
-        let crosses = |(a, b): (&DVec2, &DVec2)| {
-            (a.y <= p.y) != (b.y <= p.y) && a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) > p.x
-        };
-        ring.iter().zip(after).filter(|&edge| crosses(edge)).count() % 2 == 1
-    };
-    let (outer, holes): (Vec<&Vec<DVec2>>, Vec<&Vec<DVec2>>) = rings.iter().partition(|ring| area(ring) > 0.0);
-    // A hole belongs to the least ring around it.
-    let owner = |hole: &[DVec2]| {
-        let around = (0..outer.len()).filter(|&i| contains(outer[i], hole[0]));
-        around.min_by(|&a, &b| area(outer[a]).total_cmp(&area(outer[b])))
-    };
-    let mut owned: Vec<Vec<&Vec<DVec2>>> = vec![Vec::new(); outer.len()];
-    for hole in holes {
-        if let Some(owner) = owner(hole) {
-            owned[owner].push(hole);
-        }
-    }
-    let mut surface = Surface::default();
-    for (ring, holes) in outer.iter().zip(owned) {
-        let mut points: Vec<[f64; 2]> = ring.iter().map(|p| p.to_array()).collect();
-        let mut starts: Vec<u32> = Vec::new();
-        for hole in holes {
-            starts.push(points.len() as u32);
-            points.extend(hole.iter().map(|p| p.to_array()));
-        }
-        let mut triangles: Vec<u32> = Vec::new();
-        Earcut::new().earcut(points.iter().copied(), &starts, &mut triangles);
-        let first = surface.points.len() as u32;
-        surface.points.extend(points.iter().map(|&[x, y]| DVec3::new(x, y, 0.0)));
-        surface.triangles.extend(triangles.chunks_exact(3).map(|t| [t[0] + first, t[1] + first, t[2] + first]));
-    }
-    surface
+/// Where the surface crosses the edge along `axis` from the sample `low`, counted with those outside; `up` where that one is
+/// inside.
+fn vertex(axis: usize, low: [usize; 3], up: bool, crossing: &impl Fn([u32; 3], usize, bool) -> f64) -> DVec3 {
+    let mut inside = low;
+    inside[axis] += usize::from(!up);
+    // Samples of the grid are counted from 1 here.
+    let share = crossing(inside.map(|c| c as u32 - 1), axis, up).clamp(CLEARANCE, 1.0 - CLEARANCE);
+    let mut p = DVec3::from_array(inside.map(|c| c as f64 - 1.0));
+    p[axis] += if up { share } else { -share };
+    p
 }
 
 #[cfg(test)]
