@@ -79,9 +79,9 @@ impl Resolver<'_> {
                 let joining = match (sectors, radius) {
                     (Some(_), Some(_)) => Err("nodes are joined either by `sectors` or within a `radius`".to_owned()),
                     (_, Some(radius)) => Ok(Joining::Radius(radius)),
-                    (sectors, None) => {
-                        Sectors::new(sectors.unwrap_or(if plane { 6 } else { 8 }), plane).map(Joining::Yao)
-                    }
+                    (sectors, None) => Sectors::new(sectors.unwrap_or(if plane { 6 } else { 8 }), plane)
+                        .map(Joining::Yao)
+                        .map_err(String::from),
                 };
                 let joining = self.note(&format!("{place}.nodes.scatter"), joining)?;
                 let clusters = match &spec.clusters {
