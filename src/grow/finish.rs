@@ -37,9 +37,10 @@ impl Step {
         if let Some(pieces) = self.strands {
             skeleton = skeleton.strands(pieces);
         }
-        self.width
-            .apply(&mut skeleton)
-            .map_err(|message| GrowError::Scene { place: format!("grow.{}.width", self.name), message })?;
+        self.width.apply(&mut skeleton).map_err(|message| GrowError::Scene {
+            place: format!("grow.{}.width", self.name),
+            message: message.to_string(),
+        })?;
         if self.smooth > 0.0 {
             smooth(&mut skeleton, self.smooth);
             skeleton = bend(&skeleton);
