@@ -138,7 +138,9 @@ pub fn draw(
         let mut svg = Vec::new();
         write_svg(&model, SvgOptions { size: scene.size }, &mut svg)
             .map_err(|e| Failure::Usage(format!("cannot draw the schematic: {e}")))?;
-        return draw_svg(&String::from_utf8_lossy(&svg), &[]).map(Drawn::Screen).map_err(Failure::Usage);
+        return draw_svg(&String::from_utf8_lossy(&svg), &[])
+            .map(Drawn::Screen)
+            .map_err(|e| Failure::Usage(e.to_string()));
     }
     if let Some(view) = scene.view.as_ref().filter(|_| args.with.is_none()) {
         refuse_tracing(args)?;
@@ -207,7 +209,7 @@ fn render_rib(
     renderer.render(folder, "scene.rib", "scene.tif", progress)?;
     let wrong = |e: String| Failure::Outside(format!("{}'s picture cannot be read: {e}", renderer.program()));
     let bytes = fs::read(folder.join("scene.tif")).map_err(|e| wrong(e.to_string()))?;
-    let picture = decode_png(&bytes).map_err(wrong)?;
+    let picture = decode_png(&bytes).map_err(|e| wrong(e.to_string()))?;
     if picture.bytes.chunks_exact(4).all(|pixel| pixel[..3] == picture.bytes[..3]) {
         return Err(wrong("it is blank".to_owned()));
     }
@@ -218,9 +220,10 @@ fn render_rib(
 fn read_screen(path: &Path) -> Result<Rgba, String> {
     let bytes = fs::read(path).map_err(|e| e.to_string())?;
     if !is_exr(path) {
-        return decode_png(&bytes);
+        return decode_png(&bytes).map_err(|e| e.to_string());
     }
-    to_screen(&decode_exr(&bytes)?, true).ok_or_else(|| "it has no channels R, G and B".to_owned())
+    to_screen(&decode_exr(&bytes).map_err(|e| e.to_string())?, true)
+        .ok_or_else(|| "it has no channels R, G and B".to_owned())
 }
 
 /// A part of a picture: left, top, width, height.

@@ -440,7 +440,7 @@ impl Resolver<'_> {
     fn painting(&mut self, place: &str, spec: &PaintSpec) -> Option<Arc<Painting>> {
         let file = &spec.file;
         let wrong = |error: String| format!("cannot read `{file}`: {error}");
-        let picture = self.folder.read(file).and_then(|bytes| decode_linear(&bytes).map_err(wrong));
+        let picture = self.folder.read(file).and_then(|bytes| decode_linear(&bytes).map_err(|e| wrong(e.to_string())));
         let picture = self.note(place, picture)?;
         let pixels = picture.pixels(["R", "G", "B"])?;
         Some(Arc::new(Painting { size: [picture.width, picture.height], pixels }))
@@ -517,7 +517,7 @@ fn leaf(shape: &str, fold: f64, folder: &Folder) -> Result<Mesh, String> {
         own.map_err(|_| unknown("leaf", shape, leaf_names().iter()))?
     };
     let wrong = |error: String| format!("cannot use `{shape}` as a leaf: {error}");
-    let page = decode_sketch(&bytes).map_err(wrong)?;
+    let page = decode_sketch(&bytes).map_err(|e| wrong(e.to_string()))?;
     let outline = page.lines.iter().find(|(_, is_closed)| *is_closed).map(|(line, _)| line);
     let outline = outline.ok_or_else(|| wrong("it has no closed outline".to_owned()))?;
     let outline: Vec<DVec2> = outline.iter().map(|p| DVec2::new(p.x * page.aspect, p.y)).collect();
