@@ -112,7 +112,7 @@ fn cases() -> &'static [Case; 256] {
 }
 
 /// Two neighbouring layers of samples, a bit each, with a sample outside on every side.
-struct Layers {
+struct SampleLayers {
     /// Samples along x and y, without those outside.
     size: [usize; 2],
     /// Words of a row.
@@ -121,7 +121,7 @@ struct Layers {
     bits: [Vec<u64>; 2],
 }
 
-impl Layers {
+impl SampleLayers {
     fn new(size: [usize; 2]) -> Self {
         let words = (size[0] + 2).div_ceil(64);
         let layer = || vec![0_u64; words * (size[1] + 2)];
@@ -221,7 +221,7 @@ impl Surface {
     ) -> Self {
         let [nx, ny, nz] = size.map(|s| s as usize);
         let mut surface = Self::default();
-        let mut layers = Layers::new([nx, ny]);
+        let mut layers = SampleLayers::new([nx, ny]);
         let mut vertices = EdgeVertices::new([nx, ny]);
         for z in 0..=nz {
             layers.advance((z < nz).then_some(|x: usize, y: usize| is_inside([x as u32, y as u32, z as u32])));

@@ -18,7 +18,7 @@ const STEP: f64 = 1e-6;
 const LEAST: f64 = 1e-12;
 
 /// 8 x 8 x 8 voxels, a bit each.
-type Leaf = [u64; CELLS / 64];
+type LeafBits = [u64; CELLS / 64];
 
 /// A set of voxels: cubes of one size in a box.
 #[derive(Clone, Debug)]
@@ -33,7 +33,7 @@ pub struct Occupancy {
     root: Vec<u32>,
     /// For each tile the indices of its leaves in `leaves`, or [`NONE`].
     tiles: Vec<[u32; CELLS]>,
-    leaves: Vec<Leaf>,
+    leaves: Vec<LeafBits>,
     count: u64,
 }
 
@@ -65,7 +65,7 @@ impl Occupancy {
     /// Bytes in memory.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        self.root.len() * 4 + self.tiles.len() * CELLS * 4 + self.leaves.len() * size_of::<Leaf>()
+        self.root.len() * 4 + self.tiles.len() * CELLS * 4 + self.leaves.len() * size_of::<LeafBits>()
     }
 
     /// Side of a voxel, in scene units.
@@ -120,7 +120,7 @@ impl Occupancy {
     }
 
     /// The leaf of the voxel `at`, which must be within the box; added if it is missing.
-    fn leaf(&mut self, at: [i32; 3]) -> &mut Leaf {
+    fn leaf(&mut self, at: [i32; 3]) -> &mut LeafBits {
         let tile = self.tile(at);
         if self.root[tile] == NONE {
             self.root[tile] = self.tiles.len() as u32;
@@ -129,7 +129,7 @@ impl Occupancy {
         let slot = &mut self.tiles[self.root[tile] as usize][within(at.map(|c| c >> BITS))];
         if *slot == NONE {
             *slot = self.leaves.len() as u32;
-            self.leaves.push(Leaf::default());
+            self.leaves.push(LeafBits::default());
         }
         &mut self.leaves[*slot as usize]
     }
@@ -178,7 +178,8 @@ impl Occupancy {
         let shape = &shape.unsampled();
         let [nx, ny, nz] = self.tiling;
         let tiles: Vec<[i32; 3]> = (0..nx * ny * nz).map(|i| [i % nx, i / nx % ny, i / (nx * ny)]).collect();
-        let found: Vec<Vec<([i32; 3], Leaf)>> = tiles.into_par_iter().map(|tile| self.leaves_of(shape, tile)).collect();
+        let found: Vec<Vec<([i32; 3], LeafBits)>> =
+            tiles.into_par_iter().map(|tile| self.leaves_of(shape, tile)).collect();
         for (at, bits) in found.into_iter().flatten() {
             let mut more = 0;
             for (word, more_bits) in self.leaf(at).iter_mut().zip(bits) {
@@ -190,7 +191,7 @@ impl Occupancy {
     }
 
     /// The leaves of a tile that a shape occupies near its surface, by their first voxel.
-    fn leaves_of(&self, shape: &Shape, tile: [i32; 3]) -> Vec<([i32; 3], Leaf)> {
+    fn leaves_of(&self, shape: &Shape, tile: [i32; 3]) -> Vec<([i32; 3], LeafBits)> {
         let depth = DEPTH * self.side;
         let half_diagonal = |level: u32| f64::from(1 << level) * self.side * 0.5 * libm::sqrt(3.0);
         // May the cell contain voxels to be occupied?
@@ -209,7 +210,7 @@ impl Occupancy {
             if !is_near(at, BITS) {
                 continue;
             }
-            let mut bits = Leaf::default();
+            let mut bits = LeafBits::default();
             for voxel in 0..CELLS as i32 {
                 let cell = first_voxel(voxel, at, 0);
                 // Most of a leaf is not near: cells of 2 x 2 x 2 voxels are tested first.
@@ -224,7 +225,7 @@ impl Occupancy {
                 let is_set = d <= 0.0 && d >= -depth && self.is_within(cell);
                 bits[voxel as usize / 64] |= u64::from(is_set) << (voxel % 64);
             }
-            if bits != Leaf::default() {
+            if bits != LeafBits::default() {
                 found.push((at, bits));
             }
         }

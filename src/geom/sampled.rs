@@ -84,9 +84,9 @@ mod tests {
 
     /// A box about the origin, by its half-extents.
     #[derive(Clone)]
-    struct Block(DVec3);
+    struct Cuboid(DVec3);
 
-    impl SignedDistance for Block {
+    impl SignedDistance for Cuboid {
         fn distance(&self, p: DVec3) -> f64 {
             let q = p.abs() - self.0;
             q.max(DVec3::ZERO).length() + q.max_element().min(0.0)
@@ -96,7 +96,7 @@ mod tests {
     proptest! {
         #[test]
         fn samples_are_near(p in prop::array::uniform3(-2.0..2.0), spacing in 0.02..0.3_f64) {
-            let shape = Block(DVec3::new(1.0, 0.7, 0.4));
+            let shape = Cuboid(DVec3::new(1.0, 0.7, 0.4));
             let p = DVec3::from_array(p);
             let sampled = Sampled::new(shape.clone(), spacing);
             prop_assert!((sampled.distance(p) - shape.distance(p)).abs() < spacing);

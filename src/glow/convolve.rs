@@ -6,13 +6,13 @@ use rustfft::{FftDirection, FftPlanner};
 
 /// A picture of one channel.
 #[derive(Clone, Debug)]
-pub(super) struct Plane {
+pub(super) struct LightPlane {
     pub size: [usize; 2],
     pub values: Vec<f32>,
 }
 
 /// The convolutions of `light` with two even kernels, functions of the offset in pixels.
-pub(super) fn convolve(light: &Plane, kernels: impl Fn(i64, i64) -> [f32; 2] + Sync) -> [Plane; 2] {
+pub(super) fn convolve(light: &LightPlane, kernels: impl Fn(i64, i64) -> [f32; 2] + Sync) -> [LightPlane; 2] {
     let [width, height] = light.size;
     // Zero-padded to twice the size, so that nothing wraps around.
     let [w, h] = light.size.map(|s| smooth_size(2 * s));
@@ -39,7 +39,7 @@ pub(super) fn convolve(light: &Plane, kernels: impl Fn(i64, i64) -> [f32; 2] + S
     let part = |of: fn(&Complex<f32>) -> f32| {
         let values =
             (0..height).flat_map(|y| spread[y * w..y * w + width].iter().map(|c| (of(c) * scale).max(0.0))).collect();
-        Plane { size: light.size, values }
+        LightPlane { size: light.size, values }
     };
     [part(|c| c.re), part(|c| c.im)]
 }
@@ -73,7 +73,7 @@ fn smooth_size(least: usize) -> usize {
         .unwrap_or(least)
 }
 
-impl Plane {
+impl LightPlane {
     /// The value at pixel coordinates, pixel centres at halves, by bicubic Catmull-Rom interpolation, clamped to 0 and above.
     pub fn at(&self, x: f64, y: f64) -> f32 {
         let [width, height] = self.size;
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn is_the_sum_over_all_sources() {
         let size = [23, 14];
-        let mut light = Plane { size, values: vec![0.0; size[0] * size[1]] };
+        let mut light = LightPlane { size, values: vec![0.0; size[0] * size[1]] };
         let sources = [(3, 2, 1.0), (22, 13, 2.5), (0, 7, 0.5)];
         sources.iter().for_each(|&(x, y, v)| light.values[y * size[0] + x] = v);
         let kernel = |dx: i64, dy: i64| {

@@ -10,7 +10,7 @@ use crate::model::Piece;
 const STRIP: usize = 32;
 
 /// A piece in pixel coordinates.
-struct Drawn {
+struct ScreenPiece {
     from: DVec2,
     /// From one end to the other.
     span: DVec2,
@@ -32,11 +32,11 @@ pub(super) fn cover<'a>(
 ) -> Vec<f32> {
     let [width, height] = canvas.size.map(|s| s.div_ceil(scale) as usize);
     let factor = 1.0 / f64::from(scale);
-    let drawn: Vec<Drawn> = pieces
+    let drawn: Vec<ScreenPiece> = pieces
         .map(|piece| {
             let [from, to] = piece.ends.map(|p| canvas.to_pixels(p) * factor);
             let span = to - from;
-            Drawn {
+            ScreenPiece {
                 from,
                 span,
                 length2: span.length_squared(),
@@ -64,7 +64,7 @@ pub(super) fn cover<'a>(
     values
 }
 
-impl Drawn {
+impl ScreenPiece {
     fn reach(&self) -> f64 {
         self.radii[0].max(self.radii[1]) + 1.5
     }

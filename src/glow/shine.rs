@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::Canvas;
-use super::convolve::{Plane, convolve};
+use super::convolve::{LightPlane, convolve};
 use super::coverage::cover;
 use super::near::{NearError, NearField, NearParameters};
 use super::scatter::Scattering;
@@ -172,7 +172,7 @@ fn coarseness(canvas: &Canvas) -> u32 {
 }
 
 /// The halo and the illumination of clouds by a stroke of unit light, on a coarse picture.
-fn broad(stroke: &Stroke, canvas: &Canvas, has_halo: bool, dim: &dyn Fn(f64) -> f64) -> [Plane; 2] {
+fn broad(stroke: &Stroke, canvas: &Canvas, has_halo: bool, dim: &dyn Fn(f64) -> f64) -> [LightPlane; 2] {
     let scale = coarseness(canvas);
     let size = canvas.size.map(|s| s.div_ceil(scale) as usize);
     let GlowSpec { core, branches, halo, cloud, .. } = stroke.glow;
@@ -203,7 +203,7 @@ fn broad(stroke: &Stroke, canvas: &Canvas, has_halo: bool, dim: &dyn Fn(f64) -> 
     };
     let kernel = |dx: i64, dy: i64| pixel_mean(dx, dy, |r| [air(r), falloff(r)]);
     let share = normalisation(height as i64, kernel);
-    convolve(&Plane { size, values: light }, |dx, dy| {
+    convolve(&LightPlane { size, values: light }, |dx, dy| {
         let [a, b] = kernel(dx, dy);
         [(a * share[0]) as f32, (b * share[1]) as f32]
     })

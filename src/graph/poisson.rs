@@ -33,7 +33,7 @@ pub trait Region: Sync {
 
 /// The grid over the bounding box of a region.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cells {
+pub(super) struct CellGrid {
     origin: DVec3,
     /// Side of a cell.
     side: f64,
@@ -41,7 +41,7 @@ pub(super) struct Cells {
     is_plane: bool,
 }
 
-impl Cells {
+impl CellGrid {
     pub fn new(bounds: [DVec3; 2], spacing: f64, is_plane: bool) -> Self {
         // Slightly less, so that rounding cannot put two nodes into one cell.
         let side = spacing * (1.0 - 1e-9) / libm::sqrt(if is_plane { 2.0 } else { 3.0 });
@@ -74,7 +74,7 @@ impl Cells {
 /// the spacing to an earlier one, then random points from `stream`.
 pub(super) fn poisson(
     region: &dyn Region,
-    cells: &Cells,
+    cells: &CellGrid,
     spacing: f64,
     fixed: &[DVec3],
     stream: &Stream,
@@ -132,12 +132,12 @@ pub fn poisson_points(
     if estimate.is_nan() || estimate > MOST_NODES {
         return Err(ScatterError::TooMany(estimate));
     }
-    Ok(poisson(region, &Cells::new(region.bounds(), spacing, is_plane), spacing, &[], stream))
+    Ok(poisson(region, &CellGrid::new(region.bounds(), spacing, is_plane), spacing, &[], stream))
 }
 
 /// A block of cells with its halo.
 struct CellBlock<'a> {
-    cells: &'a Cells,
+    cells: &'a CellGrid,
     /// The spacing squared.
     apart: f64,
     /// The lowest cell, halo excluded.
@@ -154,12 +154,12 @@ struct CellBlock<'a> {
     /// The index of the first new node.
     first: usize,
     /// The stack of the search.
-    stack: Vec<Piece>,
+    stack: Vec<CellPiece>,
 }
 
 /// The nodes whose discs overlap a cell, in order of distance from its centre.
 #[derive(Default)]
-struct Near {
+struct NearDiscs {
     /// Their positions.
     nodes: Vec<DVec3>,
     /// Positions relative to the cell's centre, eight at a time; unused lanes are far away.
@@ -170,7 +170,7 @@ struct Near {
 
 /// A piece of a subdivided cell.
 #[derive(Clone, Copy)]
-struct Piece {
+struct CellPiece {
     low: DVec3,
     side: f64,
     depth: u32,
@@ -179,7 +179,7 @@ struct Piece {
 }
 
 impl<'a> CellBlock<'a> {
-    fn new(cells: &'a Cells, spacing: f64, place: [i32; 3], held: &[u32], nodes: &[DVec3]) -> Self {
+    fn new(cells: &'a CellGrid, spacing: f64, place: [i32; 3], held: &[u32], nodes: &[DVec3]) -> Self {
         let low = place.map(|b| b * BLOCK);
         let size = [0, 1, 2].map(|axis| BLOCK.min(cells.size[axis] - low[axis]));
         let width = size.map(|s| (s + 2 * HALO) as usize);
@@ -280,7 +280,7 @@ impl<'a> CellBlock<'a> {
             }
         }
         order.sort_unstable_by_key(|&(key, at, _)| (key, at));
-        let mut near = Near::default();
+        let mut near = NearDiscs::default();
         for (key, at, is_inside) in order {
             let at = at.map(i32::from);
             if !self.has_room(at) {
@@ -288,7 +288,7 @@ impl<'a> CellBlock<'a> {
             }
             self.gather(at, &mut near);
             let low = self.low_corner([at[0] + self.low[0], at[1] + self.low[1], at[2] + self.low[2]]);
-            let piece = Piece { low, side: self.cells.side, depth: 0, is_inside };
+            let piece = CellPiece { low, side: self.cells.side, depth: 0, is_inside };
             if let Some(p) = self.search(simd, region, &near, piece, stream.nth(key)) {
                 self.put(at, p);
             }
@@ -322,7 +322,7 @@ impl<'a> CellBlock<'a> {
     }
 
     /// Collects the nodes whose discs overlap the cell `at`, nearest to its centre first: those most often cover a piece.
-    fn gather(&self, at: [i32; 3], near: &mut Near) {
+    fn gather(&self, at: [i32; 3], near: &mut NearDiscs) {
         near.nodes.clear();
         let half = self.cells.side * 0.5;
         let middle = self.middle([0, 1, 2].map(|axis| at[axis] + self.low[axis]));
@@ -363,12 +363,12 @@ impl<'a> CellBlock<'a> {
         &mut self,
         simd: S,
         region: &dyn Region,
-        near: &Near,
-        whole: Piece,
+        near: &NearDiscs,
+        whole: CellPiece,
         mut random: Stream,
     ) -> Option<DVec3> {
         let (apart, is_plane) = (self.apart, self.cells.is_plane);
-        let dart = |piece: &Piece, random: &mut Stream| {
+        let dart = |piece: &CellPiece, random: &mut Stream| {
             let [u, v, w]: [f64; 3] = std::array::from_fn(|_| random.random());
             let p = piece.low + DVec3::new(u, v, w) * piece.side;
             let p = if is_plane { p.with_z(0.0) } else { p };
@@ -396,7 +396,7 @@ impl<'a> CellBlock<'a> {
             for i in 0..children {
                 let child = i ^ turn;
                 let corner = DVec3::new((child & 1) as f64, (child >> 1 & 1) as f64, (child >> 2) as f64);
-                let mut part = Piece { low: piece.low + corner * side, side, depth: piece.depth + 1, ..piece };
+                let mut part = CellPiece { low: piece.low + corner * side, side, depth: piece.depth + 1, ..piece };
                 if self.is_taken(simd, near, &part) {
                     continue;
                 }
@@ -418,7 +418,7 @@ impl<'a> CellBlock<'a> {
 
     /// Is `piece` covered by the disc of one node?
     #[inline(always)]
-    fn is_taken<S: Simd>(&self, simd: S, near: &Near, piece: &Piece) -> bool {
+    fn is_taken<S: Simd>(&self, simd: S, near: &NearDiscs, piece: &CellPiece) -> bool {
         let half = piece.side * 0.5;
         let middle = self.middle_of(piece.low, piece.side);
         let deep = if self.cells.is_plane { 0.0 } else { half };

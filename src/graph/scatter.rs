@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::poisson::{Cells, poisson};
+use super::poisson::{CellGrid, poisson};
 use super::scatter_size::MOST_NODES;
 use super::yao::NodeGrid;
 use super::{CostField, FieldValue, Node, Region, ScatterError, Sectors, WeightTable, scatter_estimate};
@@ -79,7 +79,7 @@ impl Scatter {
         if estimate.is_nan() || estimate > MOST_NODES {
             return Err(ScatterError::TooMany(estimate));
         }
-        let cells = Cells::new(bounds, plan.spacing, plan.is_plane);
+        let cells = CellGrid::new(bounds, plan.spacing, plan.is_plane);
         let positions = poisson(region, &cells, plan.spacing, plan.fixed, stream);
         if positions.is_empty() {
             return Err(ScatterError::Empty);

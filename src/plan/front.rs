@@ -10,14 +10,14 @@ const SWEEP: u32 = (1 << 29) - 1;
 
 /// The map from costs to buckets.
 #[derive(Clone, Copy)]
-pub(super) struct Width {
+pub(super) struct BucketWidth {
     /// A cell shifted right by this is the number of its bucket before wrapping.
     shift: u32,
     /// The number of buckets less 1, a mask.
     wrap: u32,
 }
 
-impl Width {
+impl BucketWidth {
     pub fn new(range: WeightRange, slot_bits: u32) -> Result<Self, PlanError> {
         let log = range.least.ilog2();
         // One bucket for the current one and one for rounding.
@@ -59,18 +59,18 @@ impl Width {
 pub(super) struct Front<'a, G> {
     pub graph: &'a G,
     pub cells: &'a Cells,
-    pub width: Width,
+    pub width: BucketWidth,
     /// The cell of a generator: the least cost.
     pub start: u32,
-    /// [`Width::within`] where a node whose cost falls within its bucket is in that bucket already; 0 where it may not be,
+    /// [`BucketWidth::within`] where a node whose cost falls within its bucket is in that bucket already; 0 where it may not be,
     /// since its cost is that of an earlier search.
     pub waiting: u32,
 }
 
 /// The wanted nodes that are not known to be settled.
-pub(super) struct Wanted(Option<Vec<Node>>);
+pub(super) struct WantedNodes(Option<Vec<Node>>);
 
-impl Wanted {
+impl WantedNodes {
     pub fn new(nodes: Option<&[Node]>) -> Self {
         Self(nodes.map(<[_]>::to_vec))
     }

@@ -3,7 +3,7 @@
 use super::PlanError;
 use super::buckets::Buckets;
 use super::cells::Cells;
-use super::front::{Front, Wanted, Width};
+use super::front::{BucketWidth, Front, WantedNodes};
 use super::shared;
 use super::tree::Plan;
 use crate::graph::{Graph, Node};
@@ -117,7 +117,7 @@ pub(super) fn plan_on<'g, G: Graph>(
     progress: &Progress,
 ) -> Result<Plan<'g, G>, PlanError> {
     debug_assert!(later.nodes.is_empty() || threads == 1);
-    let width = Width::new(graph.weight_range(), G::SLOT_BITS)?;
+    let width = BucketWidth::new(graph.weight_range(), G::SLOT_BITS)?;
     let cells = Cells::new(graph.cells());
     let mut buckets = Buckets::new(width.count());
     // Cost 1, since a cell of 0 means unreached.
@@ -143,7 +143,7 @@ pub(super) fn plan_on<'g, G: Graph>(
         let latest = 1_u64 << (30 - G::SLOT_BITS);
         let mut nodes: Vec<(Node, u64)> = later.nodes.iter().map(|&(node, cost)| (node, cost.min(latest))).collect();
         nodes.sort_unstable_by_key(|&(node, cost)| (cost, node));
-        run_alone(&front, buckets, Later { nodes: &nodes, ..later }, (Wanted::new(wanted), most), progress)?
+        run_alone(&front, buckets, Later { nodes: &nodes, ..later }, (WantedNodes::new(wanted), most), progress)?
     };
     Ok(Plan::new(graph, cells, settled, farthest))
 }
@@ -161,7 +161,7 @@ impl<G: Graph> Plan<'_, G> {
             *self = plan_on(graph, generators, Later::NONE, Goal::Everything, 1, progress)?;
             return Ok(());
         }
-        let width = Width::new(graph.weight_range(), G::SLOT_BITS)?;
+        let width = BucketWidth::new(graph.weight_range(), G::SLOT_BITS)?;
         let mut buckets = Buckets::new(width.count());
         let start = 1 << G::SLOT_BITS;
         for &generator in generators {
@@ -172,7 +172,7 @@ impl<G: Graph> Plan<'_, G> {
             }
         }
         let front = Front { graph, cells, width, start, waiting: 0 };
-        run_alone(&front, buckets, Later::NONE, (Wanted::new(None), u64::MAX), progress)?;
+        run_alone(&front, buckets, Later::NONE, (WantedNodes::new(None), u64::MAX), progress)?;
         Ok(())
     }
 }
@@ -183,7 +183,7 @@ fn run_alone<G: Graph>(
     front: &Front<'_, G>,
     mut buckets: Buckets,
     later: Later<'_>,
-    until: (Wanted, u64),
+    until: (WantedNodes, u64),
     progress: &Progress,
 ) -> Result<(usize, u64), Cancelled> {
     let (mut wanted, most) = until;

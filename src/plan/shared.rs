@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::buckets::{Buckets, CHUNK};
-use super::front::{Front, Wanted};
+use super::front::{Front, WantedNodes};
 use crate::graph::{Graph, Node};
 use crate::math::{Cancelled, Progress};
 
@@ -76,7 +76,7 @@ pub(super) fn run<G: Graph>(
             let shared = &shared;
             let buckets = first.take().unwrap_or_else(|| Buckets::new(shared.front.width.count()));
             let progress = progress.take();
-            scope.spawn(move || shared.work(own, buckets, Wanted::new(wanted), progress));
+            scope.spawn(move || shared.work(own, buckets, WantedNodes::new(wanted), progress));
         }
     });
     if shared.stop.into_inner() != NEVER {
@@ -90,7 +90,7 @@ impl<G: Graph> Shared<'_, G> {
     ///
     /// Threads own slabs of the graph, so that they seldom write to each other's cells: a node is pushed by the thread that
     /// reaches it, and sent to its owner when its bucket is popped.
-    fn work(&self, own: usize, mut buckets: Buckets, mut wanted: Wanted, progress: Option<&Progress>) {
+    fn work(&self, own: usize, mut buckets: Buckets, mut wanted: WantedNodes, progress: Option<&Progress>) {
         let front = &self.front;
         let Front { graph, cells, width, start, .. } = *front;
         let mut base = width.base(start);

@@ -70,7 +70,7 @@ pub fn measure_from(skeleton: &Skeleton, foot: Option<DVec3>) -> Measurement {
     let Some(root) = foot.or(skeleton.nodes.first().map(|n| n.position)) else {
         return Measurement::default();
     };
-    let axis = Upright { root, is_flat: skeleton.nodes.iter().all(|n| n.position.z == root.z) };
+    let axis = VerticalAxis { root, is_flat: skeleton.nodes.iter().all(|n| n.position.z == root.z) };
     let (height, offset) = (|p: DVec3| axis.height(p), |p: DVec3| axis.offset(p));
     let Lengths { along, start, length, offsets, heights } = Lengths::new(skeleton, &axis);
     let most =
@@ -120,13 +120,13 @@ pub fn measure_from(skeleton: &Skeleton, foot: Option<DVec3>) -> Measurement {
 }
 
 /// The upright line through the root.
-struct Upright {
+struct VerticalAxis {
     root: DVec3,
     /// Is the skeleton in the plane, with y up?
     is_flat: bool,
 }
 
-impl Upright {
+impl VerticalAxis {
     /// Height above the root.
     fn height(&self, p: DVec3) -> f64 {
         if self.is_flat { p.y - self.root.y } else { p.z - self.root.z }
@@ -154,7 +154,7 @@ struct Lengths {
 }
 
 impl Lengths {
-    fn new(skeleton: &Skeleton, axis: &Upright) -> Self {
+    fn new(skeleton: &Skeleton, axis: &VerticalAxis) -> Self {
         let mut along = vec![0.0; skeleton.nodes.len()];
         let mut start: Vec<u32> = (0..skeleton.nodes.len() as u32).collect();
         let (mut length, mut offsets, mut heights) = (0.0, 0.0, 0.0);
