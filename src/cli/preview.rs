@@ -13,7 +13,7 @@ use crate::math::{Progress, srgb_byte, to_srgb};
 use crate::model::Model;
 use crate::raster::{Layers, filmic};
 use crate::scene::Resolved;
-use crate::trace::{self, Picture, View, World};
+use crate::trace::{self, Picture, RenderSettings, World};
 
 /// Samples a pixel where none are asked for, in the studio and the exact look.
 const SAMPLES: [u32; 2] = [8, 9];
@@ -52,7 +52,7 @@ pub fn samples(args: &RenderArgs) -> u32 {
 }
 
 /// What is asked for of a picture of `size`, within `max_memory` bytes; `data` keeps what an EXR holds besides colours.
-pub fn view(args: &RenderArgs, size: [u32; 2], data: bool, max_memory: u64) -> Result<View, Failure> {
+pub fn view(args: &RenderArgs, size: [u32; 2], data: bool, max_memory: u64) -> Result<RenderSettings, Failure> {
     let crop = args.crop.unwrap_or([0, 0, size[0], size[1]]);
     let [x, y, width, height] = crop;
     let fits = |from: u32, length: u32, whole: u32| from.checked_add(length).is_some_and(|end| end <= whole);
@@ -70,11 +70,16 @@ pub fn view(args: &RenderArgs, size: [u32; 2], data: bool, max_memory: u64) -> R
             max_memory / 1_000_000
         )));
     }
-    Ok(View { crop, transparent: args.transparent, data, ..View::new(size, look(args), samples(args)) })
+    Ok(RenderSettings {
+        crop,
+        transparent: args.transparent,
+        data,
+        ..RenderSettings::new(size, look(args), samples(args))
+    })
 }
 
 /// Traces `view` of `model`.
-pub fn trace(model: &Model, view: &View, progress: &Progress) -> Result<Drawn, Failure> {
+pub fn trace(model: &Model, view: &RenderSettings, progress: &Progress) -> Result<Drawn, Failure> {
     let world = World::new(model);
     let picture = trace::render(&world, view, progress).map_err(|_| Failure::Stopped)?;
     let mut objects: Vec<String> = model.objects.iter().map(|o| o.name.clone()).collect();

@@ -10,7 +10,7 @@ use crate::files::{ExrHead, PngHead, REC709, Rgba, encode_exr_rows, encode_png_r
 use crate::glow::{Canvas, Composite, Layer, Pass, ShineError, shine};
 use crate::math::Progress;
 use crate::model::Stroke;
-use crate::raster::{Grey, Plate, Samples, Window};
+use crate::raster::{DataWindow, Grey, Plate, Samples};
 use crate::scene::{Resolved, View};
 
 /// Rows that are coloured at a time.
@@ -143,7 +143,7 @@ impl Shone {
             .iter()
             .map(|(k, t)| (if *k == "Software" { "software" } else { k }.to_owned(), (*t).to_owned()))
             .collect();
-        let window = plate.as_ref().map_or_else(Window::default, |plate| plate.window);
+        let window = plate.as_ref().map_or_else(DataWindow::default, |plate| plate.window);
         let told = plate.as_ref().and_then(|plate| plate.chromaticities).unwrap_or(REC709);
         let head = |channels| ExrHead {
             size: self.canvas.size,

@@ -14,7 +14,7 @@ use exr::prelude::{
 
 use super::PictureError;
 use super::picture::{MOST_BYTES, MOST_SIDE};
-use crate::raster::{Channel, Layers, Panorama, Window};
+use crate::raster::{Channel, DataWindow, Layers, Panorama};
 
 /// Why an OpenEXR picture cannot be decoded.
 #[derive(Debug, thiserror::Error)]
@@ -114,13 +114,13 @@ pub fn decode_exr(bytes: &[u8]) -> Result<Layers, ExrError> {
     }
     let size = [layer.size.width() as u32, layer.size.height() as u32];
     let (at, display) = (layer.attributes.layer_position, image.attributes.display_window);
-    let mut window = Window {
+    let mut window = DataWindow {
         at: [at.x(), at.y()],
         origin: [display.position.x(), display.position.y()],
         display: [display.size.width() as u32, display.size.height() as u32],
     };
     if (window.at, window.display) == (window.origin, size) && window.at == [0, 0] {
-        window = Window::default();
+        window = DataWindow::default();
     }
     let xy = |c: Chromaticities| [c.red, c.green, c.blue, c.white].map(|v| [v.0, v.1]);
     let chromaticities = image.attributes.chromaticities.map(|c| {
@@ -143,7 +143,7 @@ pub struct ExrHead {
     /// Pixels in a row, and rows, of what is stored.
     pub size: [u32; 2],
     /// Data window and display window.
-    pub window: Window,
+    pub window: DataWindow,
     /// Names of the channels, and whether they are stored in 16 bits.
     pub channels: Vec<(String, bool)>,
     /// Keyword and text: `software` and `comments` become standard attributes, others custom ones.
@@ -324,7 +324,7 @@ mod tests {
                 ("comments".to_owned(), "{\"a\":1}".to_owned()),
                 ("cryptomatte/1/name".to_owned(), "x".to_owned()),
             ],
-            window: Window { at: [-1, 4], origin: [0, 0], display: [12, 8] },
+            window: DataWindow { at: [-1, 4], origin: [0, 0], display: [12, 8] },
             chromaticities: Some([0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329]),
         };
         let mut bytes = Cursor::new(Vec::new());

@@ -1,6 +1,6 @@
 //! Multi-channel pictures.
 
-use super::Window;
+use super::DataWindow;
 
 /// One channel of a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub struct Layers {
     /// Keyword and text.
     pub texts: Vec<(String, String)>,
     /// Data window and display window.
-    pub window: Window,
+    pub window: DataWindow,
     /// CIE xy of red, green, blue and white, if they are known.
     pub chromaticities: Option<[f32; 8]>,
 }

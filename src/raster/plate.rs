@@ -29,14 +29,14 @@ pub struct Plate {
     /// The embedded ICC profile.
     pub profile: Option<Vec<u8>>,
     /// Data window and display window.
-    pub window: Window,
+    pub window: DataWindow,
     /// CIE xy of red, green, blue and white, if the file has them.
     pub chromaticities: Option<[f32; 8]>,
 }
 
 /// OpenEXR's data window, the stored pixels, within the display window, the picture itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Window {
+pub struct DataWindow {
     /// Left and top of the data window.
     pub at: [i32; 2],
     /// Left and top of the display window.
@@ -127,7 +127,7 @@ mod tests {
             curves: [curve.clone(), curve.clone(), curve],
             from_rec709: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
             profile: None,
-            window: Window::default(),
+            window: DataWindow::default(),
             chromaticities: None,
         };
         assert_eq!(plate.frame(), [86, 1]);

@@ -10,7 +10,7 @@ use super::{LightsSpec, Resolved, SceneError};
 use crate::grow::{Canopy, GrowError, Grown, Mark, MarkKind, Regions, Rounds, Space, Step};
 use crate::math::{Cancelled, Colour, DVec3, Progress};
 use crate::model::{Camera, Ground, Light, Material, Model, Object, Projection, Skin, Stroke, shining, to_world};
-use crate::skeleton::{Part, Plant, Skeleton};
+use crate::skeleton::{Plant, PlantPart, Skeleton};
 
 /// The ground has faded into the horizon at this many times the camera's distance or the scene's size.
 const GROUND_REACH: f64 = 2.5;
@@ -165,9 +165,9 @@ fn shape_plants(steps: &[Step], grown: &mut [Grown]) {
     let shaped: Vec<(Vec<usize>, Vec<Skeleton>)> = plants
         .into_par_iter()
         .map(|(base, members)| {
-            let parts: Vec<Part<'_>> = members
+            let parts: Vec<PlantPart<'_>> = members
                 .iter()
-                .map(|&i| Part {
+                .map(|&i| PlantPart {
                     skeleton: &grown[i].skeleton,
                     width: &steps[i].width,
                     first_level: grown[i].first_level,

@@ -23,7 +23,7 @@ pub use dimension::dimension;
 pub use form::{Form, FormSpec};
 pub use measure::{Measurement, measure, measure_from};
 pub use order::Orders;
-pub use plant::{Part, Plant};
+pub use plant::{Plant, PlantPart};
 pub use relate::{apart, crossings, floating, nearest, shared_ends};
 pub use smooth::smooth;
 pub use spline::{bend, overlap};

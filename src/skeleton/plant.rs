@@ -11,7 +11,7 @@ const UNIT: f64 = 1e-3;
 
 /// What one step contributes to a plant.
 #[derive(Clone, Debug)]
-pub struct Part<'a> {
+pub struct PlantPart<'a> {
     /// What it grew.
     pub skeleton: &'a Skeleton,
     /// Its width.
@@ -52,7 +52,7 @@ pub(super) struct PlantEnd {
 impl Plant {
     /// Joins the parts: a root of a later part that coincides with a node of an earlier one is that node.
     #[must_use]
-    pub fn new(parts: &[Part<'_>]) -> Self {
+    pub fn new(parts: &[PlantPart<'_>]) -> Self {
         let mut plant = Self { nodes: Vec::new(), ends: Vec::new(), parts: parts.len() };
         let mut known: HashMap<[u64; 3], u32> = HashMap::new();
         for (index, part) in (0..).zip(parts) {
@@ -297,8 +297,8 @@ mod tests {
         let width = |root, z| Width::Length(ByLength { root, tip: None, unit: None, z: PerRound::All(z) });
         let (wide, fine) = (width(Some(0.5), 0.6), width(None, 0.3));
         let given = [
-            Part { skeleton: &trunk, width: &wide, first_level: 0 },
-            Part { skeleton: &limbs, width: &fine, first_level: 1 },
+            PlantPart { skeleton: &trunk, width: &wide, first_level: 0 },
+            PlantPart { skeleton: &limbs, width: &fine, first_level: 1 },
         ];
         let mut plant = Plant::new(&given);
         plant.thicken(&wide);
@@ -333,8 +333,8 @@ mod tests {
         let (trunk, limbs) = parts();
         let width = Width::Pipe(Pipe { root: Some(0.4), tip: None, power: None });
         let given = [
-            Part { skeleton: &trunk, width: &width, first_level: 0 },
-            Part { skeleton: &limbs, width: &width, first_level: 1 },
+            PlantPart { skeleton: &trunk, width: &width, first_level: 0 },
+            PlantPart { skeleton: &limbs, width: &width, first_level: 1 },
         ];
         let mut plant = Plant::new(&given);
         plant.thicken(&width);

@@ -12,5 +12,5 @@ mod smooth;
 mod world;
 
 pub use film::{Data, Picture, RANKS, Ranks};
-pub use render::{Look, View, render};
-pub use world::{Surface, World};
+pub use render::{Look, RenderSettings, render};
+pub use world::{SurfaceHit, World};

@@ -29,7 +29,7 @@ pub enum Look {
 
 /// The parameters of a rendering.
 #[derive(Clone, Copy, Debug)]
-pub struct View {
+pub struct RenderSettings {
     /// Size of the whole picture, in pixels.
     pub size: [u32; 2],
     /// The crop window: left, top, width, height, in pixels.
@@ -45,7 +45,7 @@ pub struct View {
     pub data: bool,
 }
 
-impl View {
+impl RenderSettings {
     /// A whole picture of this size.
     #[must_use]
     pub fn new(size: [u32; 2], look: Look, samples: u32) -> Self {
@@ -100,7 +100,7 @@ impl Eye {
 ///
 /// # Errors
 /// [`Cancelled`] by `progress`.
-pub fn render(world: &World<'_>, view: &View, progress: &Progress) -> Result<Picture, Cancelled> {
+pub fn render(world: &World<'_>, view: &RenderSettings, progress: &Progress) -> Result<Picture, Cancelled> {
     let [left, top, width, height] = view.crop;
     if view.look == Look::Exact {
         return Ok(trace_tiles(world, view, progress)?.0);
@@ -109,7 +109,7 @@ pub fn render(world: &World<'_>, view: &View, progress: &Progress) -> Result<Pic
     let (x, y) = (left.saturating_sub(MARGIN), top.saturating_sub(MARGIN));
     let right = (left + width + MARGIN).min(view.size[0]);
     let bottom = (top + height + MARGIN).min(view.size[1]);
-    let wide = View { crop: [x, y, right - x, bottom - y], ..*view };
+    let wide = RenderSettings { crop: [x, y, right - x, bottom - y], ..*view };
     let (mut picture, faces) = trace_tiles(world, &wide, progress)?;
     picture.pixels = smooth(picture.width, &picture.pixels, &faces);
     Ok(picture.cut([left - x, top - y, width, height]))
@@ -118,7 +118,7 @@ pub fn render(world: &World<'_>, view: &View, progress: &Progress) -> Result<Pic
 /// Traces all tiles; a pixel has a face where all its samples hit one face of uniform colour.
 fn trace_tiles(
     world: &World<'_>,
-    view: &View,
+    view: &RenderSettings,
     progress: &Progress,
 ) -> Result<(Picture, Vec<Option<FaceKey>>), Cancelled> {
     let eye = Eye::new(world, view.size);
@@ -191,7 +191,7 @@ fn morton(x: u32) -> u64 {
 }
 
 /// Adds the samples of a pixel.
-fn sample(world: &World<'_>, view: &View, eye: &Eye, x: u32, y: u32, samples: &mut Vec<Sample>) {
+fn sample(world: &World<'_>, view: &RenderSettings, eye: &Eye, x: u32, y: u32, samples: &mut Vec<Sample>) {
     let (px, py) = (f64::from(x), f64::from(y));
     let take = |dx: f64, dy: f64, u: &[f64; 6]| trace(world, view, eye, &eye.ray(px + dx, py + dy), u);
     match view.look {
@@ -219,7 +219,7 @@ fn sample(world: &World<'_>, view: &View, eye: &Eye, x: u32, y: u32, samples: &m
 }
 
 /// The sample along a camera ray; `u` are its random numbers.
-fn trace(world: &World<'_>, view: &View, eye: &Eye, ray: &Ray, u: &[f64; 6]) -> Sample {
+fn trace(world: &World<'_>, view: &RenderSettings, eye: &Eye, ray: &Ray, u: &[f64; 6]) -> Sample {
     let Some(surface) = world.closest(ray, &eye.within) else {
         let Colour(sky) = if view.transparent { Colour([0.0; 3]) } else { world.model.sky.colour(ray.direction) };
         return Sample {

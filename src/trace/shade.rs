@@ -1,7 +1,7 @@
 //! Shading: POV-Ray's local illumination, and the studio look.
 
 use super::sampling::{DIMENSIONS, cone, cosine_hemisphere};
-use super::world::{Surface, World};
+use super::world::{SurfaceHit, World};
 use crate::bvh::Ray;
 use crate::math::{Colour, DVec3, power};
 use crate::model::{Light, Material};
@@ -12,7 +12,7 @@ const SHADOW: f64 = 1e-3;
 impl World<'_> {
     /// The radiance of `surface` towards the origin of `ray` by POV-Ray's local illumination (`reference/povray.md`): one shadow ray
     /// for each light.
-    pub(super) fn exact(&self, ray: &Ray, surface: &Surface) -> [f64; 3] {
+    pub(super) fn exact(&self, ray: &Ray, surface: &SurfaceHit) -> [f64; 3] {
         let (material, pigment) = self.material(surface);
         let own = material.ambient + material.emission;
         let mut colour = pigment.map(|c| c * own);
@@ -34,7 +34,7 @@ impl World<'_> {
 
     /// The radiance of `surface` towards the origin of `ray` in the studio look: the sky instead of constant ambient light, and suns
     /// of finite size. `u` selects one direction to the sky and one to each sun.
-    pub(super) fn studio(&self, ray: &Ray, surface: &Surface, u: &[f64; DIMENSIONS]) -> [f64; 3] {
+    pub(super) fn studio(&self, ray: &Ray, surface: &SurfaceHit, u: &[f64; DIMENSIONS]) -> [f64; 3] {
         let (material, pigment) = self.material(surface);
         let mut colour = pigment.map(|c| c * material.emission);
         let origin = surface.point + surface.normal * self.off;
@@ -68,7 +68,7 @@ impl World<'_> {
     }
 
     /// The material of a surface, and its colour there.
-    fn material(&self, surface: &Surface) -> (&Material, [f64; 3]) {
+    fn material(&self, surface: &SurfaceHit) -> (&Material, [f64; 3]) {
         let material = match (surface.object, &self.model.ground) {
             (Some(object), _) => &self.model.materials[self.model.objects[object as usize].material].1,
             (None, Some(ground)) => &ground.material,

@@ -90,7 +90,7 @@ impl Place {
 
 /// What a ray met.
 #[derive(Clone, Copy, Debug)]
-pub struct Surface {
+pub struct SurfaceHit {
     /// Distance along the ray.
     pub t: f64,
     /// Where it is.
@@ -193,7 +193,7 @@ impl<'a> World<'a> {
         Self { model, dome: Dome::new(model), shapes, boxes: Boxes::new(&boxes), instances, branches, off: reach * OFF }
     }
 
-    /// The name of each branch as [`Surface::branch`] counts them: `object.limb`.
+    /// The name of each branch as [`SurfaceHit::branch`] counts them: `object.limb`.
     #[must_use]
     pub fn branch_names(&self) -> Vec<String> {
         let mut names = Vec::new();
@@ -221,7 +221,7 @@ impl<'a> World<'a> {
     }
 
     /// The nearest thing on the ray, `within` being the solids that hold its origin.
-    pub(super) fn closest(&self, ray: &Ray, within: &[Within]) -> Option<Surface> {
+    pub(super) fn closest(&self, ray: &Ray, within: &[Within]) -> Option<SurfaceHit> {
         let mut ray = *ray;
         let ground = self.ground(&ray);
         if let Some(surface) = &ground {
@@ -264,7 +264,7 @@ impl<'a> World<'a> {
                 && surface.is_none_or(|s| entry.t * scale < s.t)
             {
                 let inner = self.on_cone(&ray, w.instance, entry.t * scale, Some(entry), &cone, balls);
-                surface = Some(Surface { is_inside: true, ..inner });
+                surface = Some(SurfaceHit { is_inside: true, ..inner });
             }
         }
         surface
@@ -295,14 +295,14 @@ impl<'a> World<'a> {
         }
     }
 
-    fn ground(&self, ray: &Ray) -> Option<Surface> {
+    fn ground(&self, ray: &Ray) -> Option<SurfaceHit> {
         let ground = self.model.ground.as_ref()?;
         let t = (ground.height - ray.origin.z) / ray.direction.z;
         let point = ray.at(t);
         let is_met = t > ray.near && t < ray.far;
         let is_on = ground.radius.is_none_or(|r| point.x * point.x + point.y * point.y <= r * r);
         let normal = if ray.direction.z < 0.0 { DVec3::Z } else { DVec3::NEG_Z };
-        (is_met && is_on).then_some(Surface {
+        (is_met && is_on).then_some(SurfaceHit {
             t,
             point,
             normal,
@@ -323,7 +323,7 @@ impl<'a> World<'a> {
         entry: Option<Entry>,
         cone: &RoundCone,
         balls: [u32; 2],
-    ) -> Surface {
+    ) -> SurfaceHit {
         let (index, place) = &self.instances[instance as usize];
         let object = &self.model.objects[*index as usize];
         let (own, scale) = place.ray(ray);
@@ -345,7 +345,7 @@ impl<'a> World<'a> {
             })
         });
         let normal = place.normal(normal);
-        Surface {
+        SurfaceHit {
             t,
             point: ray.at(t),
             normal: if normal.dot(ray.direction) > 0.0 { -normal } else { normal },
@@ -358,7 +358,7 @@ impl<'a> World<'a> {
         }
     }
 
-    fn on_mesh(&self, ray: &Ray, instance: u32, t: f64, id: u32) -> Surface {
+    fn on_mesh(&self, ray: &Ray, instance: u32, t: f64, id: u32) -> SurfaceHit {
         let (index, place) = &self.instances[instance as usize];
         let object = &self.model.objects[*index as usize];
         let triangle = triangle(object, id as usize);
@@ -377,7 +377,7 @@ impl<'a> World<'a> {
             None => flat,
         };
         let normal = place.normal(normal);
-        Surface {
+        SurfaceHit {
             t,
             point: ray.at(t),
             normal: if normal.dot(ray.direction) > 0.0 { -normal } else { normal },
