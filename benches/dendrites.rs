@@ -17,7 +17,7 @@ use lichtenberg::grow::Grown;
 use lichtenberg::math::{Progress, mix};
 use lichtenberg::scene::{Override, Resolved, Source, grow, load, model};
 use lichtenberg::skeleton::dimension;
-use lichtenberg::trace::{Look, View, World, render};
+use lichtenberg::trace::{Look, RenderSettings, World, render};
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -175,7 +175,7 @@ fn moss() -> Result<(), Failure> {
     Rib::new(&model, &templates, "moss", scene.size, &origin, RibOptions::default())
         .write_archive(Count(&mut bytes[1]))?;
     let written = begun.elapsed().as_secs_f64();
-    let view = View::new(scene.size, Look::Studio, 4);
+    let view = RenderSettings::new(scene.size, Look::Studio, 4);
     render(&World::new(&model), &view, &Progress::default())?;
     let whole = begun.elapsed().as_secs_f64();
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

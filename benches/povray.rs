@@ -13,7 +13,7 @@ use lichtenberg::export::{Origin, Pov, Templates};
 use lichtenberg::files::{Rgba, encode_png};
 use lichtenberg::math::{Colour, DVec3, Progress, srgb_byte};
 use lichtenberg::model::{Ball, Camera, Digits, Instance, Light, Material, Mesh, Model, Object, Projection, Sky};
-use lichtenberg::trace::{Look, View, World, render};
+use lichtenberg::trace::{Look, RenderSettings, World, render};
 use rayon::prelude::*;
 
 mod support;
@@ -70,7 +70,8 @@ fn model(count: usize) -> Model {
 fn ours(count: usize, samples: u32) {
     let model = model(count);
     let world = World::new(&model);
-    let picture = render(&world, &View::new(SIZE, Look::Exact, samples), &Progress::default()).expect("not cancelled");
+    let picture =
+        render(&world, &RenderSettings::new(SIZE, Look::Exact, samples), &Progress::default()).expect("not cancelled");
     let pixel = |p: &[f32; 4]| [p[0], p[1], p[2], 1.0].map(|c| srgb_byte(f64::from(c)));
     let bytes = picture.pixels.par_iter().map(pixel).collect::<Vec<_>>().into_flattened();
     let picture = Rgba { width: SIZE[0], height: SIZE[1], bytes };

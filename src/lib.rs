@@ -36,7 +36,7 @@
 //! use lichtenberg::files::embedded_scenes;
 //! use lichtenberg::math::Progress;
 //! use lichtenberg::scene::{Override, Source, grow, load, model};
-//! use lichtenberg::trace::{Look, View, World, render};
+//! use lichtenberg::trace::{Look, RenderSettings, World, render};
 //!
 //! let (name, text, folder) = embedded_scenes().into_iter().find(|(name, ..)| name == "elm").ok_or("no elm")?;
 //! let source = Source { name, text: text.to_owned(), folder };
@@ -51,7 +51,7 @@
 //! Pov::new(&model, &Templates::default(), "elm", scene.recipe.size, &Origin::default()).write_inc(&mut inc)?;
 //! assert!(String::from_utf8(inc)?.contains("#declare Elm_Height"));
 //!
-//! let view = View::new([64, 64], Look::Studio, 4);
+//! let view = RenderSettings::new([64, 64], Look::Studio, 4);
 //! let picture = render(&World::new(&model), &view, &Progress::default())?;
 //! assert_eq!(picture.pixels.len(), 64 * 64);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

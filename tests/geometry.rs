@@ -7,7 +7,7 @@ use lichtenberg::math::{Colour, DVec3, Progress, Stream};
 use lichtenberg::model::{
     Ball, Camera, Digits, Ground, Instance, Light, Material, Mesh, Model, Object, Projection, Sky,
 };
-use lichtenberg::trace::{Look, View, World, render};
+use lichtenberg::trace::{Look, RenderSettings, World, render};
 use proptest::prelude::*;
 use rand::RngExt;
 
@@ -57,7 +57,7 @@ fn model(balls: Vec<Ball>, segments: Vec<[u32; 2]>) -> Model {
 fn cover(model: &Model) -> f64 {
     let world = World::new(model);
     let shares = [Look::Exact, Look::Studio].map(|look| {
-        let view = View { transparent: true, data: true, ..View::new([48, 48], look, 4) };
+        let view = RenderSettings { transparent: true, data: true, ..RenderSettings::new([48, 48], look, 4) };
         let picture = render(&world, &view, &Progress::default()).unwrap();
         assert!(picture.pixels.iter().flatten().all(|x| x.is_finite()), "every pixel is a number");
         picture.pixels.iter().map(|p| f64::from(p[3])).sum::<f64>() / picture.pixels.len() as f64

@@ -12,7 +12,7 @@ use lichtenberg::compare::{Metric, measure};
 use lichtenberg::files::{Rgba, decode_linear, decode_png};
 use lichtenberg::math::Progress;
 use lichtenberg::scene::{grow, model};
-use lichtenberg::trace::{Look, View, World, render};
+use lichtenberg::trace::{Look, RenderSettings, World, render};
 use rayon::prelude::*;
 use support::{embedded, lichtenberg, require_povray, run_in, scene_names, small_variant, succeed_in, text};
 
@@ -100,15 +100,15 @@ fn threads_and_crops_change_nothing() {
     let model = model(&scene, &grown, [96, 64]).unwrap();
     let world = World::new(&model);
     for look in [Look::Studio, Look::Exact] {
-        let view = View { data: true, ..View::new([96, 64], look, 4) };
-        let on = |threads: usize, view: &View| {
+        let view = RenderSettings { data: true, ..RenderSettings::new([96, 64], look, 4) };
+        let on = |threads: usize, view: &RenderSettings| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| render(&world, view, &Progress::default()).unwrap())
         };
         let whole = on(1, &view);
         assert_eq!(whole.pixels, on(3, &view).pixels);
         assert_eq!(whole.data.len(), whole.pixels.len());
-        let crop = on(2, &View { crop: [17, 9, 40, 31], ..view });
+        let crop = on(2, &RenderSettings { crop: [17, 9, 40, 31], ..view });
         for y in 0..31 {
             for x in 0..40 {
                 assert_eq!(crop.pixels[y * 40 + x], whole.pixels[(y + 9) * 96 + x + 17], "{look:?} {x} {y}");

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::grow::{Grown, Step};
 use crate::math::DVec3;
-use crate::skeleton::{Part, Plant, Skeleton};
+use crate::skeleton::{Plant, PlantPart, Skeleton};
 
 /// Gives plants, which several steps grew together, their widths and their form.
 pub(super) fn shape_plants(steps: &[Step], grown: &mut [Grown]) {
@@ -43,9 +43,9 @@ pub(super) fn shape_plants(steps: &[Step], grown: &mut [Grown]) {
     let shaped: Vec<(Vec<usize>, Vec<Skeleton>)> = plants
         .into_par_iter()
         .map(|(base, members)| {
-            let parts: Vec<Part<'_>> = members
+            let parts: Vec<PlantPart<'_>> = members
                 .iter()
-                .map(|&i| Part {
+                .map(|&i| PlantPart {
                     skeleton: &grown[i].skeleton,
                     width: &steps[i].width,
                     first_level: grown[i].first_level,

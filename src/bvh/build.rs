@@ -1,23 +1,22 @@
-//! Building trees: `obvhs` clusters the boxes, piece by piece, and its binary trees are collapsed to eight children a
-//! node.
+//! Construction: `obvhs` clusters the boxes piece by piece, and its binary trees are collapsed to eight children a node.
 
 use obvhs::aabb::Aabb as Box2;
 use obvhs::bvh2::node::Bvh2Node;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use rayon::prelude::*;
 
+use super::binary::Binary;
 use super::collapse::{Wide, collapse};
-
 use super::tree::{Aabb, Child, STACK, WIDTH};
 
-/// Slots of the table in which boxes about the same middle are noticed, as a power of 2.
+/// log2 of the slots of the hash table that detects coincident centres.
 const TABLE_BITS: u32 = 16;
-/// More boxes than this about middles that others have make clustering slow: it goes quadratic on coincident boxes.
+/// Coincident boxes from which on clustering, quadratic in their number, is avoided.
 const MOST_COINCIDENT: usize = 4096;
-/// Boxes that are clustered at once: few enough that what clustering needs besides (200 bytes each) is little.
+/// Boxes clustered at once, which bounds the temporary memory (200 bytes each).
 const PIECE: usize = 1 << 16;
 
-/// Fewer boxes than [`MOST_COINCIDENT`] have another one's middle, as far as a small table can tell.
+/// Have fewer than [`MOST_COINCIDENT`] boxes the centre of another one, as far as a small hash table detects?
 pub(super) fn is_spread<'a>(boxes: impl Iterator<Item = &'a Aabb>) -> bool {
     let mut table = vec![0_u32; 1 << TABLE_BITS];
     let mut seen = 0;
@@ -33,17 +32,11 @@ pub(super) fn is_spread<'a>(boxes: impl Iterator<Item = &'a Aabb>) -> bool {
     seen < MOST_COINCIDENT
 }
 
-/// A binary tree; its leaves are ranges of `order`.
-pub(super) struct Binary {
-    pub nodes: Vec<Bvh2Node>,
-    pub order: Vec<u32>,
-}
-
-/// A slot of a block without a primitive.
+/// An empty slot of a block.
 pub(super) const EMPTY: u32 = u32::MAX;
 
-/// The tree over `boxes`, and the boxes of each block: the eight slots of a block hold indices of boxes, or
-/// [`EMPTY`]. Boxes in the tree are grown by `pad`.
+/// The tree over `boxes`, and the indices of the boxes of each block, [`EMPTY`] in unused slots. Boxes in the tree are padded
+/// by `pad`.
 pub(super) fn build(boxes: &[Aabb], pad: f32) -> Wide {
     if boxes.is_empty() {
         return Wide::default();
@@ -90,7 +83,7 @@ fn piece(boxes: &[Aabb], indices: &[u32], pad: f32) -> Wide {
     };
     if is_spread(indices.iter().map(|&i| &boxes[i as usize])) {
         let wide = with_blocks(&cluster(boxes, indices), |node, _| node.aabb().half_area());
-        // Half of the stack is the top's.
+        // The other half of the stack is for the top tree.
         if wide.waiting <= STACK / 2 {
             return wide;
         }
@@ -98,7 +91,7 @@ fn piece(boxes: &[Aabb], indices: &[u32], pad: f32) -> Wide {
     with_blocks(&halve(boxes, indices.to_vec(), 1), by_count)
 }
 
-/// The weight of a node that keeps a tree shallow.
+/// The weight by the number of primitives, which keeps a tree shallow.
 fn by_count(_: &Bvh2Node, count: u32) -> f32 {
     count as f32
 }
@@ -107,8 +100,8 @@ fn to_box2(b: &Aabb) -> Box2 {
     Box2::new(b.min.into(), b.max.into())
 }
 
-/// The binary tree by locally-ordered clustering (reinsertion pays nothing once it is collapsed:
-/// `benches/README.md`).
+/// The binary tree by parallel locally-ordered clustering (Meister and Bittner 2018); reinsertion does not pay once it is
+/// collapsed (`benches/README.md`).
 fn cluster(boxes: &[Aabb], indices: &[u32]) -> Binary {
     let own: Vec<Box2> = indices.iter().map(|&i| to_box2(&boxes[i as usize])).collect();
     let all = (0..own.len() as u32).collect();
@@ -117,8 +110,7 @@ fn cluster(boxes: &[Aabb], indices: &[u32]) -> Binary {
     Binary { nodes: bvh.nodes, order }
 }
 
-/// The binary tree by halving the longest side at the median until a leaf holds at most `most`: balanced whatever the
-/// boxes are.
+/// The binary tree by median splits of the longest axis, with leaves of at most `most` boxes: balanced for any input.
 fn halve(boxes: &[Aabb], mut order: Vec<u32>, most: usize) -> Binary {
     let mut nodes = vec![Bvh2Node::default()];
     let mut open = vec![(0_usize, 0..order.len())];
@@ -143,7 +135,7 @@ fn halve(boxes: &[Aabb], mut order: Vec<u32>, most: usize) -> Binary {
     Binary { nodes, order }
 }
 
-/// The primitives below a node that holds a block's worth.
+/// The primitives below a node with at most a block of them.
 fn gather(binary: &Binary, root: &Bvh2Node) -> [u32; WIDTH] {
     let mut block = [EMPTY; WIDTH];
     let mut len = 0;

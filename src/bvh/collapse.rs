@@ -1,12 +1,12 @@
-//! From two children a node to eight, at the least expected cost (Ylitie, Karras and Laine 2017, "Efficient
-//! incoherent ray traversal on GPUs through compressed wide BVHs", section 3.2).
+//! The collapse of a binary tree to eight children a node with the least expected cost (Ylitie, Karras and Laine 2017,
+//! "Efficient incoherent ray traversal on GPUs through compressed wide BVHs", section 3.2).
 
 use obvhs::bvh2::node::Bvh2Node;
 
-use super::build::Binary;
+use super::binary::Binary;
 use super::tree::{Aabb, Child, Tree, WIDTH};
 
-/// What a ray pays for a block, as a multiple of what it pays for a node.
+/// The cost of intersecting a block over that of a node.
 const BLOCK_COST: f32 = 0.8;
 
 /// An 8-wide tree and the primitives of its blocks.
@@ -14,15 +14,15 @@ const BLOCK_COST: f32 = 0.8;
 pub(super) struct Wide {
     pub tree: Tree,
     pub blocks: Vec<[u32; WIDTH]>,
-    /// How many children can wait during a traversal.
+    /// Upper bound of the stack's size during a traversal.
     pub waiting: usize,
 }
 
-/// What it costs to have all below a node in at most 1, 2, ... 8 children.
+/// The cost of representing a subtree as a forest of at most 1, 2, ... 8 nodes.
 type Costs = [f32; WIDTH];
 
-/// Collapses a binary tree: a node of at most `most` primitives may become a leaf, which `leaf` makes, and larger ones
-/// become nodes. A node is met by rays in proportion to its `weight`, told from it and its count of primitives.
+/// Collapses a binary tree: a node of at most `most` primitives may become a leaf, made by `leaf`. `weight`, a function of a
+/// node and its number of primitives, is proportional to the probability that a ray hits the node.
 pub(super) fn collapse(
     binary: &Binary,
     most: u32,
@@ -55,7 +55,7 @@ pub(super) fn collapse(
     wide
 }
 
-/// How many primitives are below each node, and what they cost.
+/// The number of primitives below each node, and the costs.
 fn costs(nodes: &[Bvh2Node], most: u32, weight: impl Fn(&Bvh2Node, u32) -> f32) -> (Vec<u32>, Vec<Costs>) {
     let mut seen = Vec::with_capacity(nodes.len());
     let mut open = vec![0_u32];
@@ -88,24 +88,24 @@ fn costs(nodes: &[Bvh2Node], most: u32, weight: impl Fn(&Bvh2Node, u32) -> f32) 
     (counts, costs)
 }
 
-/// How many of `n` children the first of two nodes can have.
+/// The possible numbers of the `n` children that the first of two nodes gets.
 fn shares(n: usize) -> std::ops::Range<usize> {
     1..n
 }
 
-/// The cost of two siblings, of which the first has `k` of `n` children.
+/// The cost of two siblings, of which the first gets `k` of `n` children.
 fn shared(costs: &[Costs], first: usize, n: usize, k: usize) -> f32 {
     costs[first][k - 1] + costs[first + 1][n - k - 1]
 }
 
-/// The children of a node in the wide tree, and how many they are.
+/// The children of a node in the wide tree, and their number.
 fn children(nodes: &[Bvh2Node], costs: &[Costs], from: u32, is_leaf: bool) -> ([u32; WIDTH], usize) {
     let mut found = [from; WIDTH];
     if is_leaf {
         return (found, 1);
     }
     let mut len = 0;
-    // Nodes that become at most so many children.
+    // Nodes with the most children that each may become.
     let mut open = [(0_u32, 0_usize); WIDTH + 1];
     let mut waiting = 0;
     let split = |i: u32, n: usize, open: &mut [(u32, usize); WIDTH + 1], waiting: &mut usize| {
@@ -121,7 +121,7 @@ fn children(nodes: &[Bvh2Node], costs: &[Costs], from: u32, is_leaf: bool) -> ([
         waiting -= 1;
         let (i, n) = open[waiting];
         let own = &costs[i as usize];
-        // As few as cost no more.
+        // The least number at the same cost.
         match (1..=n).find(|&m| own[m - 1] <= own[n - 1]) {
             None | Some(1) => {
                 found[len] = i;

@@ -1,10 +1,12 @@
-//! Ray queries: round cones and triangles in 8-wide trees, collapsed from the binary tree that `obvhs` builds.
+//! Ray queries: round cones and triangles in 8-wide bounding volume hierarchies, collapsed from the binary tree that `obvhs`
+//! builds.
 //!
-//! The tree is traversed with one code for every instruction set, chosen at run time (`fearless_simd`), without fused
-//! or approximate operations: all give the same hits, and equal hits go to the lowest id. Any input is accepted:
-//! primitives that are no solid (a radius that is not above 0, a number that is not finite) are left out, identical
-//! ones by the thousand are kept once, and the depth of the tree is bounded.
+//! One source of the traversal is compiled for every instruction set and chosen at run time (`fearless_simd`), without fused
+//! or approximate operations: all give the same hits, and of equal hits the lowest id counts. Any input is accepted:
+//! degenerate primitives (a radius that is not above 0, a number that is not finite) are left out, thousands of identical
+//! ones are deduplicated, and the depth of the tree is bounded.
 
+mod binary;
 mod build;
 mod collapse;
 mod queries;
@@ -18,7 +20,7 @@ pub use ray::{Hit, Ray};
 pub use round_cone::{Entry, RoundCone};
 pub use triangle::Triangle;
 
-/// Round cones in a tree.
+/// A hierarchy of round cones.
 pub type Cones = Queries<RoundCone, 8>;
-/// Triangles in a tree.
+/// A hierarchy of triangles.
 pub type Triangles = Queries<Triangle, 9>;

@@ -1,4 +1,4 @@
-//! Primitives of one kind in a tree: the nearest hit, and whether there is any.
+//! Closest-hit and any-hit queries for primitives of one kind.
 
 use std::marker::PhantomData;
 
@@ -12,11 +12,11 @@ use super::{Hit, Ray};
 use crate::geom::Bounds;
 use crate::math::{DVec3, prefetch};
 
-/// Boxes are grown by this share of the whole: more than the rounding of a box's test (Ize 2013, "Robust BVH ray
+/// Padding of boxes, as a share of the size of the whole: above the rounding error of the slab test (Ize 2013, "Robust BVH ray
 /// traversal").
 const PAD: f32 = 1e-6;
 
-/// Eight primitives of `N` numbers each, transposed; lanes without one hold NaN, which nothing meets.
+/// Eight primitives of `N` numbers each, as structure of arrays; unused lanes are NaN, which no ray hits.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct Block<const N: usize> {
@@ -37,26 +37,26 @@ impl<const N: usize> Block<N> {
     }
 }
 
-/// What can be put into a tree, as `N` numbers.
+/// A kind of primitive, packed as `N` numbers.
 pub trait Primitive<const N: usize>: Sync {
-    /// Its numbers; `None` where it is no solid.
+    /// The packed primitive; `None` if it is degenerate.
     fn pack(&self) -> Option<[f32; N]>;
 
-    /// Least and greatest corner of a box around it.
+    /// Least and greatest corner of its bounding box.
     fn bounds(packed: &[f32; N]) -> [[f32; 3]; 2];
 
-    /// Where the ray enters each of eight, beyond its near end: infinity or NaN where it does not.
+    /// The distance at which the ray enters each of eight primitives, beyond its near end; infinity or NaN on a miss.
     #[doc(hidden)]
     fn enter<S: Simd>(beam: &Beam<S>, block: &Block<N>) -> f32x8<S>;
 }
 
-/// Primitives in a tree.
+/// A bounding volume hierarchy of primitives.
 #[derive(Clone, Debug)]
 pub struct Queries<P, const N: usize> {
     level: Level,
     tree: Tree,
     blocks: Vec<Block<N>>,
-    /// What each block holds.
+    /// The ids of each block's primitives.
     ids: Vec<[u32; WIDTH]>,
     bounds: Aabb,
     count: usize,
@@ -64,7 +64,7 @@ pub struct Queries<P, const N: usize> {
 }
 
 impl<P: Primitive<N>, const N: usize> Queries<P, N> {
-    /// The tree over `count` primitives, each told by `primitive`; a hit's id is its index.
+    /// The hierarchy of `count` primitives, given by index; a hit's id is that index.
     #[must_use]
     pub fn new(count: usize, primitive: impl Fn(usize) -> P + Sync) -> Self {
         Self::with_level(Level::new(), count, primitive)
@@ -73,7 +73,7 @@ impl<P: Primitive<N>, const N: usize> Queries<P, N> {
     /// [`Queries::new`] for a chosen instruction set; all give the same hits.
     #[must_use]
     pub fn with_level(level: Level, count: usize, primitive: impl Fn(usize) -> P + Sync) -> Self {
-        // Packed again wherever it is needed: cheaper than the memory.
+        // Packed again at each use: cheaper than the memory.
         let pack = |i: u32| primitive(i as usize).pack();
         let mut ids: Vec<u32> = (0..count as u32).into_par_iter().filter(|&i| pack(i).is_some()).collect();
         let of = |i: u32| pack(i).unwrap_or([f32::NAN; N]);
@@ -83,7 +83,7 @@ impl<P: Primitive<N>, const N: usize> Queries<P, N> {
         };
         let mut boxes: Vec<Aabb> = ids.par_iter().map(bounds).collect();
         if !build::is_spread(boxes.iter()) {
-            // Identical ones are seen as one: the first.
+            // Of identical ones only the first is kept.
             let mut keyed: Vec<_> = ids.par_iter().map(|&i| (of(i).map(f32::to_bits), i)).collect();
             keyed.par_sort_unstable();
             keyed.dedup_by_key(|(bits, _)| *bits);
@@ -107,19 +107,19 @@ impl<P: Primitive<N>, const N: usize> Queries<P, N> {
         Self { level, tree, blocks, ids: order, bounds: whole, count: ids.len(), kind: PhantomData }
     }
 
-    /// Primitives in the tree: those that are no solid are left out, and, where there are thousands, repetitions.
+    /// The number of primitives, without degenerate ones and, among thousands, without duplicates.
     #[must_use]
     pub fn len(&self) -> usize {
         self.count
     }
 
-    /// Is there nothing to hit?
+    /// Are there no primitives?
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// A box around all.
+    /// The bounding box of all primitives.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         self.bounds.into()
@@ -133,12 +133,12 @@ impl<P: Primitive<N>, const N: usize> Queries<P, N> {
             + self.ids.capacity() * size_of::<[u32; WIDTH]>()
     }
 
-    /// The nearest primitive that the ray enters. One that holds the ray's origin is seen through.
+    /// The closest hit: the nearest primitive that the ray enters. Primitives that contain its origin are ignored.
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Option<Hit> {
         dispatch!(self.level, simd => {
             let beam = Beam::new(simd, ray, self.bounds.middle());
-            // A lane that is missed holds infinity, which must not pass for a hit.
+            // Finite: infinity marks a miss.
             let far = ((ray.far - beam.shift) as f32).min(f32::MAX);
             let mut leaf = Closest::<P, N> { blocks: &self.blocks, ids: &self.ids, t: far, id: EMPTY, kind: PhantomData };
             self.tree.walk::<_, _, true>(&beam, far, &mut leaf);
@@ -146,7 +146,7 @@ impl<P: Primitive<N>, const N: usize> Queries<P, N> {
         })
     }
 
-    /// Does the ray enter any primitive?
+    /// Any hit: does the ray enter a primitive?
     #[must_use]
     pub fn is_blocked(&self, ray: &Ray) -> bool {
         dispatch!(self.level, simd => {
@@ -220,7 +220,7 @@ impl From<Aabb> for Bounds {
     }
 }
 
-/// Boxes in a tree: what is in them is the caller's to test.
+/// A bounding volume hierarchy of boxes whose contents the caller tests.
 #[derive(Clone, Debug)]
 pub struct Boxes {
     level: Level,
@@ -230,7 +230,7 @@ pub struct Boxes {
 }
 
 impl Boxes {
-    /// The tree over `boxes`.
+    /// The hierarchy of `boxes`.
     #[must_use]
     pub fn new(boxes: &[Bounds]) -> Self {
         let corner = |p: DVec3| p.to_array().map(|x| x as f32);
@@ -240,8 +240,8 @@ impl Boxes {
         Self { level: Level::new(), tree, blocks, middle: whole.middle() }
     }
 
-    /// Shows `test` the boxes that the ray meets, roughly nearest first, with the far end that still matters;
-    /// it returns the new one, negative to stop.
+    /// Calls `test` with the index of each box that the ray hits, roughly nearest first, and the ray's far end; `test` returns the new
+    /// far end, negative to end the traversal.
     pub fn meet(&self, ray: &Ray, test: &mut dyn FnMut(u32, f64) -> f64) {
         dispatch!(self.level, simd => {
             let beam = Beam::new(simd, ray, self.middle);
@@ -268,7 +268,7 @@ impl Leaf for Each<'_, '_> {
                 return f32::NEG_INFINITY;
             }
         }
-        // A little farther than it is, so that rounding loses nothing.
+        // Rounded up, so that no hit is lost.
         ((self.far - self.shift) as f32).next_up()
     }
 

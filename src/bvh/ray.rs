@@ -1,31 +1,31 @@
-//! Rays and what they hit.
+//! Rays and hits.
 
 use crate::math::DVec3;
 
 /// The part of a ray between two distances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it starts.
+    /// Its origin.
     pub origin: DVec3,
-    /// Its direction, of length 1.
+    /// Its direction, a unit vector.
     pub direction: DVec3,
-    /// Hits count beyond this distance.
+    /// Exclusive lower bound of the distance of hits.
     pub near: f64,
-    /// Hits count below this distance.
+    /// Exclusive upper bound of the distance of hits.
     pub far: f64,
 }
 
-/// The nearest thing that a ray met.
+/// The nearest hit of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Distance along the ray.
     pub t: f64,
-    /// Index of the primitive as it was given.
+    /// Index of the primitive.
     pub id: u32,
 }
 
 impl Ray {
-    /// The whole ray from `origin` along the unit vector `direction`.
+    /// The unbounded ray from `origin` along the unit vector `direction`.
     #[must_use]
     pub fn new(origin: DVec3, direction: DVec3) -> Self {
         Self { origin, direction, near: 0.0, far: f64::INFINITY }

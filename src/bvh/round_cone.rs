@@ -1,4 +1,4 @@
-//! Round cones: two spheres and the frustum tangent to both; a sphere is one whose ends are equal.
+//! Round cones: two spheres and the frustum tangent to both; with equal ends, a sphere.
 
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8};
 
@@ -7,7 +7,7 @@ use super::tree::Beam;
 use super::{Primitive, Ray};
 use crate::math::DVec3;
 
-/// Two spheres and the frustum tangent to both; where one holds the other, only that sphere.
+/// Two spheres and the frustum tangent to both; where one sphere contains the other, only that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoundCone {
     /// Centre of one sphere.
@@ -20,34 +20,33 @@ pub struct RoundCone {
     pub rb: f64,
 }
 
-/// A point of a round cone's surface on a ray.
+/// An intersection of a ray with a round cone's surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry {
     /// Distance along the ray.
     pub t: f64,
-    /// Unit normal, outwards.
+    /// Outward unit normal.
     pub normal: DVec3,
-    /// The share of the way from `a` to `b`: 0 on the sphere about `a`, 1 on that about `b`.
+    /// The parameter between the ends: 0 on the sphere about `a`, 1 on that about `b`.
     pub share: f64,
     is_entrance: bool,
 }
 
 impl RoundCone {
-    /// Where the ray enters it beyond `ray.near`, in double precision: the nearest of the entrances into its spheres
-    /// and its frustum.
+    /// The first entrance of the ray beyond `ray.near`, in double precision: the nearest entrance into a sphere or the frustum.
     #[must_use]
     pub fn enter(&self, ray: &Ray) -> Option<Entry> {
         nearest(self.surfaces(ray).into_iter().flatten().filter(|e| e.t > ray.near && e.is_entrance))
     }
 
-    /// The nearest of its surfaces beyond `ray.near`, spheres within the frustum among them, from inside or outside:
-    /// what a camera sees that stands in it, as POV-Ray shows unions.
+    /// The nearest intersection beyond `ray.near`, from inside or outside, internal surfaces included: what a camera inside it
+    /// sees, as POV-Ray shows unions.
     #[must_use]
     pub fn inner(&self, ray: &Ray) -> Option<Entry> {
         nearest(self.surfaces(ray).into_iter().flatten().filter(|e| e.t > ray.near))
     }
 
-    /// The normal near its surface at `p`: away from its axis.
+    /// The approximate normal at `p`: away from the axis.
     #[must_use]
     pub fn normal_at(&self, p: DVec3) -> DVec3 {
         let ba = self.b - self.a;
@@ -55,7 +54,7 @@ impl RoundCone {
         (p - self.a - ba * share).normalize_or(DVec3::Z)
     }
 
-    /// Is `p` within?
+    /// Is `p` inside?
     #[must_use]
     pub fn holds(&self, p: DVec3) -> bool {
         let (ba, rr) = (self.b - self.a, self.ra - self.rb);
@@ -66,7 +65,7 @@ impl RoundCone {
         if d2 <= 0.0 {
             return false;
         }
-        // Within the tangent frustum: nearer to its axis than its slope, between its ends.
+        // Inside the frustum: below its side, between its ends.
         let along = (p - self.a).dot(ba) / ba.length();
         let across = libm::sqrt(((p - self.a).length_squared() - along * along).max(0.0));
         let sin = rr / ba.length();
@@ -146,7 +145,7 @@ impl Primitive<8> for RoundCone {
         let (a, ra) = (block.point(simd, 0), block.lane(simd, 3));
         let (b, rb) = (block.point(simd, 4), block.lane(simd, 7));
         let ba = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
-        // The ray from its point nearest to `a`: large distances would lose the digits that tell thin things apart.
+        // The ray's origin is moved to its point nearest to `a`: large distances would cancel catastrophically.
         let ao = [a[0] - beam.origin[0], a[1] - beam.origin[1], a[2] - beam.origin[2]];
         let base = dot(ao, d);
         let oa = [d[0] * base - ao[0], d[1] * base - ao[1], d[2] * base - ao[2]];
@@ -163,7 +162,7 @@ impl Primitive<8> for RoundCone {
         let h = k1 * k1 - k0 * k2;
         let near = f32x8::splat(simd, beam.near) - base;
 
-        // Most blocks that a ray comes to it misses: roots are taken where there is something to take.
+        // A ray misses most blocks that it visits: square roots are taken only for hits.
         let infinity = f32x8::splat(simd, f32::INFINITY);
         let mut t = infinity;
         if (h.simd_ge(zero) & d2.simd_gt(zero)).any_true() {

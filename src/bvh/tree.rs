@@ -7,19 +7,19 @@ use crate::math::{DVec3, prefetch};
 
 /// Children of a node, and primitives of a block.
 pub(super) const WIDTH: usize = 8;
-/// Nodes that wait during a traversal, at most; the builder keeps trees within it.
+/// Size of the traversal stack; the builder bounds the depth accordingly.
 pub(super) const STACK: usize = 128;
-/// Marks a child as a block.
+/// The flag of a child that is a block.
 const BLOCK: u32 = 1 << 31;
 
-/// A box by its least and greatest corner.
+/// An axis-aligned bounding box in single precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
     pub min: [f32; 3],
     pub max: [f32; 3],
 }
 
-/// Eight boxes, transposed, and what is in them. Missing children have boxes that nothing meets.
+/// The boxes of eight children, as structure of arrays, and the children. Missing ones have empty boxes.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 struct Node {
@@ -29,7 +29,7 @@ struct Node {
     children: [u32; WIDTH],
 }
 
-/// What a child of a node is.
+/// A child of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Child {
     Node(u32),
@@ -42,40 +42,40 @@ pub(super) struct Tree {
     nodes: Vec<Node>,
 }
 
-/// A ray as traversal needs it: in single precision, from a point of it near the primitives.
+/// A ray prepared for traversal: in single precision, with its origin moved near to the primitives.
 #[derive(Clone, Copy)]
 pub struct Beam<S: Simd> {
     pub simd: S,
     pub origin: [f32x8<S>; 3],
     pub direction: [f32x8<S>; 3],
     inverse: [f32x8<S>; 3],
-    /// Which of a box's six planes are met first.
+    /// The near plane of a box along each axis.
     first: [usize; 3],
     pub near: f32,
     /// Distance of `origin` along the ray.
     pub shift: f64,
 }
 
-/// What a leaf's test does to the search.
+/// The visitor of a traversal.
 pub(super) trait Leaf {
-    /// Tests a block; returns the distance beyond which nothing matters any more, negative to stop.
+    /// Tests a block; returns the new far end of the ray, negative to end the traversal.
     fn test<S: Simd>(&mut self, beam: &Beam<S>, block: usize, far: f32) -> f32;
 
-    /// Asks the cache for a block that will be tested.
+    /// Prefetches a block.
     fn fetch(&self, block: usize);
 }
 
 impl Aabb {
-    /// Holds nothing.
+    /// The empty box.
     pub const EMPTY: Self = Self { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] };
 
-    /// Holds both.
+    /// The smallest box that contains both.
     pub fn union(self, other: &Self) -> Self {
         let axes = [0, 1, 2];
         Self { min: axes.map(|i| self.min[i].min(other.min[i])), max: axes.map(|i| self.max[i].max(other.max[i])) }
     }
 
-    /// Its middle; the origin where it is empty.
+    /// Its centre; the origin for the empty box.
     pub fn middle(&self) -> DVec3 {
         if self.min[0] > self.max[0] {
             return DVec3::ZERO;
@@ -83,7 +83,7 @@ impl Aabb {
         DVec3::from_array([0, 1, 2].map(|i| (f64::from(self.min[i]) + f64::from(self.max[i])) * 0.5))
     }
 
-    /// Grown on all sides.
+    /// Enlarged by `by` on every side.
     pub fn pad(&self, by: f32) -> Self {
         Self { min: self.min.map(|x| x - by), max: self.max.map(|x| x + by) }
     }
@@ -95,13 +95,13 @@ impl Aabb {
 }
 
 impl<S: Simd> Beam<S> {
-    /// `middle` is a point among the primitives: coordinates are kept small there, for precision.
+    /// `middle` is a point among the primitives, near which the origin is moved to keep coordinates small and precise.
     #[inline(always)]
     pub fn new(simd: S, ray: &Ray, middle: DVec3) -> Self {
         let shift = (middle - ray.origin).dot(ray.direction).max(0.0);
         let o = ray.at(shift).to_array().map(|x| x as f32);
         let d = ray.direction.to_array().map(|x| x as f32);
-        // No division by 0: a ray along a plane of a box is turned by far less than a rounding.
+        // No division by 0: a component of 0 is replaced by one far below the rounding error.
         let inverse = d.map(|x| 1.0 / if x.abs() < 1e-18 { 1e-18_f32.copysign(x) } else { x });
         let splat = |v: [f32; 3]| v.map(|x| f32x8::splat(simd, x));
         Self {
@@ -122,7 +122,7 @@ impl Tree {
         self.nodes.capacity() * size_of::<Node>()
     }
 
-    /// Room for a node; fill it with [`Tree::set`].
+    /// Adds a node without children ([`Tree::set`]).
     pub fn add(&mut self) -> u32 {
         let (low, high) = ([f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]);
         let bounds = [low, low, low, high, high, high];
@@ -143,7 +143,7 @@ impl Tree {
         };
     }
 
-    /// Takes in another tree, whose blocks are numbered from `blocks` on from now; returns its root.
+    /// Appends another tree, whose blocks are renumbered from `blocks` on; returns its root.
     pub fn graft(&mut self, other: Self, blocks: u32) -> u32 {
         let root = self.nodes.len() as u32;
         self.nodes.extend(other.nodes.into_iter().map(|mut node| {
@@ -155,7 +155,7 @@ impl Tree {
         root
     }
 
-    /// Shows `leaf` the blocks that the ray meets: nearest first where `sorted`, else in any order.
+    /// Visits the blocks whose boxes the ray hits: nearest first if `SORTED`, otherwise in any order.
     #[inline(always)]
     pub fn walk<S: Simd, L: Leaf, const SORTED: bool>(&self, beam: &Beam<S>, mut far: f32, leaf: &mut L) {
         if self.nodes.is_empty() {
@@ -210,7 +210,7 @@ impl Tree {
                                 place -= 1;
                             }
                         }
-                        // What waits is fetched while the nearest is tested.
+                        // Pushed children are prefetched while the nearest is tested.
                         match item.1 & BLOCK {
                             0 => prefetch(&self.nodes, item.1 as usize),
                             _ => leaf.fetch((item.1 ^ BLOCK) as usize),

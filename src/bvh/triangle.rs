@@ -1,4 +1,4 @@
-//! Triangles, seen from both sides.
+//! Two-sided triangles.
 
 use fearless_simd::{Select, Simd, SimdBase, f32x8};
 
@@ -12,8 +12,8 @@ use crate::math::DVec3;
 pub struct Triangle(pub [DVec3; 3]);
 
 impl Triangle {
-    /// Distance along the ray where it meets the plane of the triangle, and the weights of the second and third
-    /// corner there (Moeller and Trumbore 1997), in double precision; `None` where they are parallel.
+    /// The distance of the ray's intersection with the triangle's plane, and the barycentric coordinates of the second and the
+    /// third vertex there (Moeller and Trumbore 1997), in double precision; `None` if they are parallel.
     #[must_use]
     pub fn meet(&self, ray: &Ray) -> Option<(f64, [f64; 2])> {
         let [a, b, c] = self.0;
@@ -28,7 +28,7 @@ impl Triangle {
         Some((e2.dot(q) / det, [o.dot(p) / det, ray.direction.dot(q) / det]))
     }
 
-    /// The unit normal by the order of the corners; zero where there is no area.
+    /// The unit normal, right-handed by the order of the vertices; zero for a degenerate triangle.
     #[must_use]
     pub fn normal(&self) -> DVec3 {
         let [a, b, c] = self.0;
@@ -68,8 +68,8 @@ impl Primitive<9> for Triangle {
     #[inline(always)]
     fn enter<S: Simd>(beam: &Beam<S>, block: &Block<9>) -> f32x8<S> {
         let simd = beam.simd;
-        // Edge functions from the ray's own origin (Woop et al. 2013 without the shear): neighbours that share an
-        // edge compute it alike, so that no ray slips between them.
+        // Edge functions relative to the ray's origin (Woop et al. 2013 without the shear): triangles that share an edge compute
+        // it identically, so that the test is watertight.
         let a = sub(block.point(simd, 0), beam.origin);
         let b = sub(block.point(simd, 3), beam.origin);
         let c = sub(block.point(simd, 6), beam.origin);

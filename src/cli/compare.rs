@@ -230,7 +230,7 @@ fn compare(args: &CompareArgs, config: &Config, files: &Files, wants_panel: bool
             // Another size is a difference; a channel that is not there cannot be compared.
             let is_size = (expected.width, expected.height) != (actual.width, actual.height);
             pair.outcome = if is_size { Outcome::Different } else { Outcome::Failed };
-            pair.reason = Some(reason);
+            pair.reason = Some(reason.to_string());
             (pair, panel, None)
         }
     }
@@ -244,7 +244,11 @@ fn read(path: &Path) -> Option<Result<(Layers, bool), String>> {
         Err(error) => return Some(Err(format!("cannot read {}: {error}", path.display()))),
     };
     let is_exr = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"));
-    let layers = if is_exr { decode_exr(&bytes) } else { decode_linear(&bytes) };
+    let layers = if is_exr {
+        decode_exr(&bytes).map_err(|e| e.to_string())
+    } else {
+        decode_linear(&bytes).map_err(|e| e.to_string())
+    };
     Some(layers.map(|layers| (layers, is_exr)).map_err(|error| format!("cannot read {}: {error}", path.display())))
 }
 

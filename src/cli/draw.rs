@@ -163,7 +163,7 @@ fn render_rib(
     renderer.render(folder, "scene.rib", "scene.tif", progress)?;
     let wrong = |e: String| Failure::Outside(format!("{}'s picture cannot be read: {e}", renderer.program()));
     let bytes = fs::read(folder.join("scene.tif")).map_err(|e| wrong(e.to_string()))?;
-    let picture = decode_png(&bytes).map_err(wrong)?;
+    let picture = decode_png(&bytes).map_err(|e| wrong(e.to_string()))?;
     if picture.bytes.chunks_exact(4).all(|pixel| pixel[..3] == picture.bytes[..3]) {
         return Err(wrong("it is blank".to_owned()));
     }

@@ -11,7 +11,7 @@ use crate::math::Progress;
 use crate::model::{Model, Stroke};
 use crate::picture::{self, Depth, Shone, ShoneError, Traced};
 use crate::scene::Loaded;
-use crate::trace::{self, View};
+use crate::trace::{self, RenderSettings};
 
 /// Samples a pixel where none are asked for, in the studio and the exact look.
 const SAMPLES: [u32; 2] = [8, 9];
@@ -42,7 +42,7 @@ pub fn samples(args: &RenderArgs) -> u32 {
 }
 
 /// What is asked for of a picture of `size`, within `max_memory` bytes; `data` keeps what an EXR holds besides colours.
-pub fn view(args: &RenderArgs, size: [u32; 2], data: bool, max_memory: u64) -> Result<View, Failure> {
+pub fn view(args: &RenderArgs, size: [u32; 2], data: bool, max_memory: u64) -> Result<RenderSettings, Failure> {
     let crop = args.crop.unwrap_or([0, 0, size[0], size[1]]);
     let [x, y, width, height] = crop;
     let fits = |from: u32, length: u32, whole: u32| from.checked_add(length).is_some_and(|end| end <= whole);
@@ -60,11 +60,16 @@ pub fn view(args: &RenderArgs, size: [u32; 2], data: bool, max_memory: u64) -> R
             max_memory / 1_000_000
         )));
     }
-    Ok(View { crop, transparent: args.transparent, data, ..View::new(size, look(args), samples(args)) })
+    Ok(RenderSettings {
+        crop,
+        transparent: args.transparent,
+        data,
+        ..RenderSettings::new(size, look(args), samples(args))
+    })
 }
 
 /// Traces `view` of `model`.
-pub fn trace(model: &Model, view: &View, progress: &Progress) -> Result<Drawn, Failure> {
+pub fn trace(model: &Model, view: &RenderSettings, progress: &Progress) -> Result<Drawn, Failure> {
     picture::trace(model, view, progress).map(Drawn::Traced).map_err(|_| Failure::Stopped)
 }
 

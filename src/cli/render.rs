@@ -87,9 +87,10 @@ fn require_picture(path: &Path, traces: bool) -> Result<(), Failure> {
 fn read_screen(path: &Path) -> Result<Rgba, String> {
     let bytes = fs::read(path).map_err(|e| e.to_string())?;
     if !is_exr(path) {
-        return decode_png(&bytes);
+        return decode_png(&bytes).map_err(|e| e.to_string());
     }
-    to_screen(&decode_exr(&bytes)?, true).ok_or_else(|| "it has no channels R, G and B".to_owned())
+    to_screen(&decode_exr(&bytes).map_err(|e| e.to_string())?, true)
+        .ok_or_else(|| "it has no channels R, G and B".to_owned())
 }
 
 /// A name for files and declarations: letters, digits, `_`, `-` and dots within.

@@ -50,5 +50,5 @@ fn label(text: &str, width: u32) -> Result<Rgba, Failure> {
         r##"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{LABEL}"><text x="{}" y="17" font-family="Ubuntu" font-weight="300" font-size="{size:.1}" text-anchor="middle" fill="#222">{text}</text></svg>"##,
         width / 2
     );
-    draw_svg(&svg, &[epaint_default_fonts::UBUNTU_LIGHT]).map_err(Failure::Usage)
+    draw_svg(&svg, &[epaint_default_fonts::UBUNTU_LIGHT]).map_err(|e| Failure::Usage(e.to_string()))
 }

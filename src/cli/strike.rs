@@ -306,7 +306,7 @@ fn read(path: &Path) -> Result<Vec<u8>, Failure> {
 
 fn read_plate(path: &Path, space: Option<PlateSpace>) -> Result<Plate, Failure> {
     let wrong = |error: String| Failure::Usage(format!("cannot strike {}: {error}", path.display()));
-    let mut plate = decode_plate(&read(path)?).map_err(wrong)?;
+    let mut plate = decode_plate(&read(path)?).map_err(|e| wrong(e.to_string()))?;
     let is_linear = matches!(plate.samples, Samples::Linear(_));
     match space {
         Some(_) if !is_linear => {
@@ -314,8 +314,8 @@ fn read_plate(path: &Path, space: Option<PlateSpace>) -> Result<Plate, Failure> 
                 "--plate-space is for linear photographs (OpenEXR); others say it in their profile".to_owned(),
             ));
         }
-        Some(PlateSpace::Rec709) => set_chromaticities(&mut plate, REC709).map_err(wrong)?,
-        Some(PlateSpace::Acescg) => set_chromaticities(&mut plate, ACESCG).map_err(wrong)?,
+        Some(PlateSpace::Rec709) => set_chromaticities(&mut plate, REC709).map_err(|e| wrong(e.to_string()))?,
+        Some(PlateSpace::Acescg) => set_chromaticities(&mut plate, ACESCG).map_err(|e| wrong(e.to_string()))?,
         None => {}
     }
     if plate.frame().iter().any(|&side| side < 16) {
@@ -327,7 +327,7 @@ fn read_plate(path: &Path, space: Option<PlateSpace>) -> Result<Plate, Failure> 
 
 fn read_matte(path: &Path, plate: &Plate) -> Result<Grey, Failure> {
     let wrong = |error: String| Failure::Usage(format!("{} is no matte here: {error}", path.display()));
-    let matte = decode_grey(&read(path)?).map_err(wrong)?;
+    let matte = decode_grey(&read(path)?).map_err(|e| wrong(e.to_string()))?;
     let ([w, h], [width, height]) = (matte.size(), plate.frame());
     if [w, h] != [width, height] {
         return Err(wrong(format!("it has {w} by {h} pixels, the photograph {width} by {height}")));

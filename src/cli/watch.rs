@@ -16,7 +16,7 @@ use super::jobs::Jobs;
 use super::preview::{Drawn, is_exr, trace, view};
 use super::terminal;
 use crate::math::Progress;
-use crate::trace::View;
+use crate::trace::RenderSettings;
 
 /// The first picture is this many times smaller, with one sample a pixel.
 const COARSE: u32 = 4;
@@ -142,7 +142,7 @@ fn once(
     // A corner that rounding would put outside lies at the edge.
     let corner = [0, 1].map(|i| (fine.crop[i] / COARSE).min(size[i] - 1));
     let extent = [0, 1].map(|i| less(fine.crop[i + 2]).min(size[i] - corner[i]));
-    let coarse = View { size, crop: [corner[0], corner[1], extent[0], extent[1]], samples: 1, ..fine };
+    let coarse = RenderSettings { size, crop: [corner[0], corner[1], extent[0], extent[1]], samples: 1, ..fine };
     finish(trace(&model, &coarse, progress)?)?;
     finish(trace(&model, &fine, progress)?)
 }

@@ -1,5 +1,5 @@
-//! FLIP: how different two pictures look when one flips between them (Andersson et al. 2020; for high dynamic range
-//! 2021), from 0 to 1 a pixel. Locals carry the papers' letters.
+//! FLIP: the perceived difference, 0 to 1 a pixel, when one flips between two pictures (Andersson et al. 2020; for high dynamic
+//! range 2021). Locals carry the papers' letters.
 
 use std::f64::consts::PI;
 
@@ -7,17 +7,18 @@ use rayon::prelude::*;
 
 use crate::math::power;
 
-/// Pixels to a degree of the eye: a 0.7 m wide screen of 3840 pixels seen from 0.7 m.
+/// Pixels per degree of visual angle of a 0.7 m wide screen of 3840 pixels at a distance of 0.7 m.
 pub const PIXELS_PER_DEGREE: f64 = 67.020_645;
 
 /// Exponent of the colour difference.
 const Q_C: f64 = 0.7;
-/// Where the colour difference bends, and what it is there.
+/// The knee of the map of colour differences, as a share of the largest.
 const P_C: f64 = 0.4;
+/// The value at the knee.
 const P_T: f64 = 0.95;
 /// Exponent of the feature difference.
 const Q_F: f64 = 0.5;
-/// Width of the edges that features are made of, in degrees.
+/// Width of the feature detectors, in degrees.
 const W: f64 = 0.082;
 
 type Pixel = [f64; 3];
@@ -55,7 +56,7 @@ fn from_opponent([y, c_x, c_z]: Pixel) -> Pixel {
     rgb([(y + c_x / 500.0) * WHITE[0], y * WHITE[1], (y - c_z / 200.0) * WHITE[2]])
 }
 
-/// CIELAB with the Hunt effect: colours tell less where it is dark.
+/// CIELAB adjusted for the Hunt effect: chroma in proportion to lightness.
 fn hunt(linear: Pixel) -> Pixel {
     let delta: f64 = 6.0 / 29.0;
     let f = |t: f64| {
@@ -67,20 +68,20 @@ fn hunt(linear: Pixel) -> Pixel {
     [l, 500.0 * (x - y) * 0.01 * l, 200.0 * (y - z) * 0.01 * l]
 }
 
-/// The distance HyAB: lightness by the block, colours as the crow flies.
+/// The HyAB distance: city-block in lightness, Euclidean in chroma.
 fn hyab(a: Pixel, b: Pixel) -> f64 {
     let d = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
     d[0].abs() + libm::sqrt(d[1] * d[1] + d[2] * d[2])
 }
 
-/// A picture of one number a pixel.
-struct Plane {
+/// A picture of one channel.
+struct GreyPlane {
     width: usize,
     values: Vec<f64>,
 }
 
-impl Plane {
-    /// Convolved with `across` along rows and `down` along columns, both centred; edges go on.
+impl GreyPlane {
+    /// Separable convolution with `across` along rows and `down` along columns, both centred; clamped to the edge.
     fn convolve(&self, across: &[f64], down: &[f64]) -> Self {
         let (width, height) = (self.width, self.values.len() / self.width);
         let near = |at: usize, i: usize, half: usize, most: usize| (at + i).saturating_sub(half).min(most - 1);
@@ -110,13 +111,13 @@ impl Plane {
     }
 }
 
-/// A Gaussian of contrast sensitivity: `exp(-pi^2 x^2 / b)`, x in degrees, within `radius` pixels.
+/// A Gaussian of the contrast sensitivity function: `exp(-pi^2 x^2 / b)`, x in degrees, up to `radius` pixels.
 fn sensitivity(b: f64, radius: i64, ppd: f64) -> Vec<f64> {
     (-radius..=radius).map(|i| i as f64 / ppd).map(|x| libm::exp(-PI * PI * x * x / b)).collect()
 }
 
-/// What the eye lets pass of an opponent channel: one or two Gaussians (a, b), together of sum 1.
-fn seen(plane: &Plane, gaussians: &[(f64, f64)], radius: i64, ppd: f64) -> Plane {
+/// An opponent channel filtered by the contrast sensitivity function: a sum of Gaussians (a, b), normalised.
+fn seen(plane: &GreyPlane, gaussians: &[(f64, f64)], radius: i64, ppd: f64) -> GreyPlane {
     let parts: Vec<(f64, Vec<f64>)> =
         gaussians.iter().map(|&(a, b)| (a * libm::sqrt(PI / b), sensitivity(b, radius, ppd))).collect();
     let total: f64 = parts
@@ -131,14 +132,14 @@ fn seen(plane: &Plane, gaussians: &[(f64, f64)], radius: i64, ppd: f64) -> Plane
         let part = plane.convolve(kernel, kernel);
         values.iter_mut().zip(&part.values).for_each(|(sum, x)| *sum += x * scale / total);
     }
-    Plane { width: plane.width, values }
+    GreyPlane { width: plane.width, values }
 }
 
-/// A picture as the eye sees it, for colours: filtered, cut to what can be shown, in CIELAB with the Hunt effect.
+/// The perceived colours: filtered, clamped to the gamut, in Hunt-adjusted CIELAB (section 4.1).
 fn perceived(width: usize, pixels: &[Pixel], ppd: f64) -> Vec<Pixel> {
-    // The widest Gaussian decides the radius of all (section 4.1.1).
+    // The radius of all filters is that of the widest Gaussian (section 4.1.1).
     let radius = libm::ceil(3.0 * libm::sqrt(0.04 / (2.0 * PI * PI)) * ppd) as i64;
-    let plane = |i: usize| Plane { width, values: pixels.iter().map(|p| p[i]).collect() };
+    let plane = |i: usize| GreyPlane { width, values: pixels.iter().map(|p| p[i]).collect() };
     let y = seen(&plane(0), &[(1.0, 0.0047)], radius, ppd);
     let c_x = seen(&plane(1), &[(1.0, 0.0053)], radius, ppd);
     let c_z = seen(&plane(2), &[(34.1, 0.04), (13.5, 0.025)], radius, ppd);
@@ -148,13 +149,13 @@ fn perceived(width: usize, pixels: &[Pixel], ppd: f64) -> Vec<Pixel> {
         .collect()
 }
 
-/// Strength of edges and of points at each pixel (section 4.2).
+/// The responses of the edge and the point detector at each pixel (section 4.2).
 fn features(width: usize, pixels: &[Pixel], ppd: f64) -> Vec<[f64; 2]> {
-    let grey = Plane { width, values: pixels.iter().map(|p| (p[0] + 16.0) / 116.0).collect() };
+    let grey = GreyPlane { width, values: pixels.iter().map(|p| (p[0] + 16.0) / 116.0).collect() };
     let sd = 0.5 * W * ppd;
     let radius = libm::ceil(3.0 * sd) as i64;
     let gauss: Vec<f64> = (-radius..=radius).map(|x| libm::exp(-(x * x) as f64 / (2.0 * sd * sd))).collect();
-    // Weights of either sign sum to 1.
+    // Positive and negative weights each sum to 1.
     let balanced = |weights: Vec<f64>| -> Vec<f64> {
         let positive: f64 = weights.iter().filter(|w| **w > 0.0).sum();
         let negative: f64 = -weights.iter().filter(|w| **w < 0.0).sum::<f64>();
@@ -172,8 +173,8 @@ fn features(width: usize, pixels: &[Pixel], ppd: f64) -> Vec<[f64; 2]> {
     (0..pixels.len()).map(|i| [length(ex.values[i], ey.values[i]), length(px.values[i], py.values[i])]).collect()
 }
 
-/// FLIP a pixel for pictures as screens show them: linear light, cut to 0 to 1. `ppd` is [`PIXELS_PER_DEGREE`] unless
-/// another screen is meant.
+/// LDR-FLIP: the difference of each pixel in linear light, clamped to 0 to 1. `ppd` is the pixels per degree, by default
+/// [`PIXELS_PER_DEGREE`].
 ///
 /// # Panics
 /// Where the pictures differ in size.
@@ -201,14 +202,14 @@ pub fn flip_ldr(width: u32, expected: &[[f32; 3]], actual: &[[f32; 3]], ppd: f64
         .collect()
 }
 
-/// The ACES curve that HDR-FLIP looks through, as a rational function.
+/// The ACES tone mapping of HDR-FLIP, as a rational function (Narkowicz 2015).
 fn aces(x: f64) -> f64 {
     let x = x * 0.6;
     ((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)).clamp(0.0, 1.0)
 }
 
-/// FLIP a pixel for pictures of high dynamic range in linear light: the largest over exposures from where the brightest
-/// of `expected` just shows to where its median does (Andersson et al. 2021, section 3).
+/// HDR-FLIP: the maximum of LDR-FLIP over exposures, from that at which the brightest pixel of `expected` is mapped to 0.85 to that
+/// at which its median is (Andersson et al. 2021, section 3).
 ///
 /// # Panics
 /// Where the pictures differ in size.
@@ -216,7 +217,7 @@ fn aces(x: f64) -> f64 {
 pub fn flip_hdr(width: u32, expected: &[[f32; 3]], actual: &[[f32; 3]], ppd: f64) -> Vec<f32> {
     let mut luminance: Vec<f64> = expected.iter().map(|p| xyz(p.map(f64::from))[1]).filter(|y| y.is_finite()).collect();
     luminance.sort_by(f64::total_cmp);
-    // The input that the curve takes to 0.85.
+    // The input that tone mapping maps to 0.85.
     let t = 0.85;
     let (a, b, c) = (0.36 * (2.51 - t * 2.43), 0.6 * (0.03 - t * 0.59), -t * 0.14);
     let x_max = (-b + libm::sqrt(b * b - 4.0 * a * c)) / (2.0 * a);
@@ -277,7 +278,7 @@ mod tests {
         pixels.iter().map(|&p| Colour::from_srgb(p).0.map(|x| x as f32)).collect()
     }
 
-    /// NVIDIA's own implementation is the judge.
+    /// Against NVIDIA's implementation.
     #[test]
     fn agrees_with_nvidia() {
         for (width, height, seed) in [(64, 48, 1), (33, 70, 2), (5, 3, 3)] {
@@ -290,7 +291,7 @@ mod tests {
         }
     }
 
-    /// What NVIDIA's `flip-evaluator` 1.7 says of this pair: mean 0.043_700, and two pixels.
+    /// Against NVIDIA's `flip-evaluator` 1.7: the mean, 0.043_700, and two pixels.
     #[test]
     fn high_dynamic_range_agrees_with_nvidia() {
         let (width, height) = (48_u32, 32_u32);

@@ -1,4 +1,4 @@
-//! How far two pictures are apart, in numbers.
+//! Image difference metrics.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -9,6 +9,30 @@ use crate::raster::Layers;
 
 /// Differences above this count in [`Measures::share`]: more than rounding makes.
 const NOTICED: f64 = 2.0 / 255.0;
+
+/// Why pictures cannot be compared.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CompareError {
+    /// The sizes differ.
+    #[error("sizes differ: {} by {} expected, {} by {} there", expected[0], expected[1], actual[0], actual[1])]
+    Size {
+        /// Width and height expected.
+        expected: [u32; 2],
+        /// Width and height found.
+        actual: [u32; 2],
+    },
+    /// The expected picture has no such channel or layer.
+    #[error("it has no channel or layer `{name}`; it has {}", known.join(", "))]
+    Unknown {
+        /// The name.
+        name: String,
+        /// The channels that there are.
+        known: Vec<String>,
+    },
+    /// The actual picture has no such channel.
+    #[error("channel `{0}` is missing")]
+    Missing(String),
+}
 
 /// The differences of two pictures of the same size.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -91,9 +115,9 @@ impl Metric {
     }
 }
 
-/// The channels that `chosen` names: a channel, or a layer of several (`glow`, `N`). Without any: `R G B A`, or all
-/// where there are no such.
-fn chosen_channels(picture: &Layers, chosen: &[String]) -> Result<Vec<String>, String> {
+/// The channels that `chosen` selects, by channel or by layer (`glow`, `N`); by default `R G B A`, or all if there are none of
+/// these.
+fn chosen_channels(picture: &Layers, chosen: &[String]) -> Result<Vec<String>, CompareError> {
     let names = || picture.channels.iter().map(|c| c.name.clone());
     if chosen.is_empty() {
         let colours: Vec<String> = names().filter(|n| ["R", "G", "B", "A"].contains(&n.as_str())).collect();
@@ -104,32 +128,27 @@ fn chosen_channels(picture: &Layers, chosen: &[String]) -> Result<Vec<String>, S
         let before = all.len();
         all.extend(names().filter(|n| n == choice || n.rsplit_once('.').is_some_and(|(layer, _)| layer == choice)));
         if all.len() == before {
-            return Err(format!(
-                "it has no channel or layer `{choice}`; it has {}",
-                names().collect::<Vec<_>>().join(", ")
-            ));
+            return Err(CompareError::Unknown { name: choice.clone(), known: names().collect() });
         }
     }
     Ok(all)
 }
 
-/// How far `actual` is from `expected` in the channels that `chosen` names. FLIP looks at red, green and blue where
-/// they are among them, else at the first as grey. `is_hdr` compares linear light as it is, otherwise as a screen
-/// shows it.
+/// The differences between `actual` and `expected` in the channels that `chosen` selects. FLIP compares red, green and blue if
+/// they are among them, otherwise the first channel as grey. `is_hdr` compares linear light, otherwise values are
+/// sRGB-encoded.
 ///
 /// # Errors
-/// A sentence: different sizes, or channels that are not there.
-pub fn measure(expected: &Layers, actual: &Layers, chosen: &[String], is_hdr: bool) -> Result<Measures, String> {
+/// [`CompareError`].
+pub fn measure(expected: &Layers, actual: &Layers, chosen: &[String], is_hdr: bool) -> Result<Measures, CompareError> {
     if (expected.width, expected.height) != (actual.width, actual.height) {
-        return Err(format!(
-            "sizes differ: {} by {} expected, {} by {} there",
-            expected.width, expected.height, actual.width, actual.height
-        ));
+        let size = |picture: &Layers| [picture.width, picture.height];
+        return Err(CompareError::Size { expected: size(expected), actual: size(actual) });
     }
     let names = chosen_channels(expected, chosen)?;
     let mut pairs = Vec::new();
     for name in &names {
-        let there = actual.channel(name).ok_or_else(|| format!("channel `{name}` is missing"))?;
+        let there = actual.channel(name).ok_or_else(|| CompareError::Missing(name.clone()))?;
         pairs.push((expected.channel(name).unwrap_or(&[]), there));
     }
     let show = |x: f32, name: &str| match is_hdr || name == "A" {
@@ -141,7 +160,7 @@ pub fn measure(expected: &Layers, actual: &Layers, chosen: &[String], is_hdr: bo
     let mut squares = 0.0;
     for ((a, b), name) in pairs.iter().zip(&names) {
         for i in 0..pixels {
-            // Equal bits, infinities among them, are no difference.
+            // Equal bits, also of infinities, are no difference.
             let d = if a[i].to_bits() == b[i].to_bits() { 0.0 } else { (show(a[i], name) - show(b[i], name)).abs() };
             let d = if d.is_nan() { f64::INFINITY } else { d };
             squares += d * d;
@@ -156,7 +175,7 @@ pub fn measure(expected: &Layers, actual: &Layers, chosen: &[String], is_hdr: bo
         (Some(r), Some(g), Some(b)) => [r, g, b],
         _ => [first; 3],
     };
-    // FLIP knows no infinities.
+    // FLIP is undefined for infinities.
     let finite = |picture: &Layers| -> Vec<[f32; 3]> {
         let pixels = picture.pixels(rgb).unwrap_or_default();
         pixels.into_iter().map(|p| p.map(|x| if x.is_finite() { x } else { f32::MAX.sqrt() })).collect()
@@ -202,6 +221,7 @@ mod tests {
         assert!(m.flip_max > 0.0 && m.flip < m.flip_max);
         let z = measure(&a, &b, &["Z".to_owned()], true).unwrap();
         assert_eq!((z.max, z.share), (f64::INFINITY, 0.75));
-        assert!(measure(&a, &b, &["N".to_owned()], true).unwrap_err().contains("no channel or layer `N`"));
+        let error = measure(&a, &b, &["N".to_owned()], true).unwrap_err();
+        assert_eq!(error.to_string(), "it has no channel or layer `N`; it has R, G, B, Z");
     }
 }

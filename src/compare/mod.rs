@@ -1,6 +1,6 @@
-//! Telling pictures apart: FLIP and plain errors, and reports of many pairs.
+//! Comparison of pictures: FLIP and per-pixel errors, and reports of many pairs.
 //!
-//! Stages take decoded pictures ([`crate::raster::Layers`]); files and folders are the command's.
+//! Pictures are decoded ([`crate::raster::Layers`]); files and folders are the command's.
 
 mod flip;
 mod measure;
@@ -8,6 +8,6 @@ mod report;
 mod scene_change;
 
 pub use flip::{PIXELS_PER_DEGREE, flip_hdr, flip_ldr};
-pub use measure::{Measures, Metric, measure};
+pub use measure::{CompareError, Measures, Metric, measure};
 pub use report::{Outcome, Pair, Panel, html, junit, summary};
 pub use scene_change::changes;

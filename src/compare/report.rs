@@ -1,4 +1,4 @@
-//! Reports of many pairs: a line each, JUnit, and a page with the pictures.
+//! Reports of many pairs: text lines, JUnit XML, and an HTML page with the pictures.
 
 use base64::Engine;
 use minijinja::{AutoEscape, Environment, context};
@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::{Measures, Metric};
 
-/// What became of a pair.
+/// The result of comparing a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Outcome {
@@ -23,7 +23,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// In a word.
+    /// Its name in reports.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -36,45 +36,45 @@ impl Outcome {
     }
 }
 
-/// Two pictures of a name.
+/// Two pictures with the same name.
 #[derive(Clone, Debug, Serialize)]
 pub struct Pair {
-    /// The name, within both folders.
+    /// The path within both folders.
     pub name: String,
-    /// What became of it.
+    /// The result.
     pub outcome: Outcome,
-    /// What is wrong, where there are no measures.
+    /// Why there are no measures.
     pub reason: Option<String>,
     /// Their differences.
     #[serde(flatten)]
     pub measures: Option<Measures>,
-    /// What decides.
+    /// The deciding metric.
     pub metric: Metric,
-    /// Above this they differ.
+    /// The value of the metric above which the pictures differ.
     pub threshold: f64,
-    /// Parameters of the scenes that they carry which differ.
+    /// Differing parameters of the scenes in the pictures' metadata.
     pub changes: Vec<String>,
 }
 
-/// The pictures of a pair, as PNG, for a page.
+/// The pictures of a pair, as PNG, for the HTML page.
 #[derive(Clone, Debug, Default)]
 pub struct Panel {
-    /// What was expected.
+    /// The expected picture.
     pub expected: Option<Vec<u8>>,
-    /// What is there.
+    /// The actual picture.
     pub actual: Option<Vec<u8>>,
-    /// FLIP in colours.
+    /// The FLIP map in false colours.
     pub difference: Option<Vec<u8>>,
 }
 
 impl Pair {
-    /// Is it what was expected?
+    /// Is it the same within the threshold?
     #[must_use]
     pub fn is_same(&self) -> bool {
         self.outcome == Outcome::Same
     }
 
-    /// Its line: outcome, name, measures or reason.
+    /// Its line of a text report: outcome, name, measures or reason.
     #[must_use]
     pub fn line(&self) -> String {
         let mut line = format!("{:<9} {}  {}", self.outcome.name(), self.name, self.told());
@@ -105,21 +105,22 @@ impl Pair {
     }
 }
 
-/// What a whole comparison came to, in a sentence.
+/// The summary line of a comparison.
 #[must_use]
 pub fn summary(pairs: &[Pair]) -> String {
     let same = pairs.iter().filter(|pair| pair.is_same()).count();
     format!("{same} of {} pictures are as expected", pairs.len())
 }
 
+/// Fills in a template.
 fn fill(text: &str, values: minijinja::Value) -> String {
     let mut engine = Environment::new();
     engine.set_auto_escape_callback(|_| AutoEscape::Html);
-    // The embedded templates are complete: a test fills each in.
+    // Embedded templates do not fail: a test fills in each.
     engine.render_str(text, values).unwrap_or_else(|error| error.to_string())
 }
 
-/// The pairs as JUnit's XML, a test case each.
+/// JUnit XML with a test case for each pair.
 #[must_use]
 pub fn junit(pairs: &[Pair]) -> String {
     let cases: Vec<_> = pairs
@@ -131,8 +132,7 @@ pub fn junit(pairs: &[Pair]) -> String {
     fill(include_str!("../../templates/compare.junit.xml"), context! { cases, failures, errors, count => pairs.len() })
 }
 
-/// The pairs on one page that needs nothing else: failed ones first, each with expected, actual, difference and a
-/// slider between them.
+/// A self-contained HTML page: failed pairs first, each with expected, actual, difference and a slider between them.
 #[must_use]
 pub fn html(pairs: &[(Pair, Panel)]) -> String {
     let url = |png: &Option<Vec<u8>>| {

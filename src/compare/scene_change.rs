@@ -1,10 +1,10 @@
-//! What changed in the scenes that two pictures carry.
+//! Differences between the scenes in the metadata of two pictures.
 
 use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-/// The parameters that differ between two resolved scenes, as `path: old -> new`, in order.
+/// The parameters that differ between two resolved scenes in JSON, as `path: old -> new`, sorted by path.
 #[must_use]
 pub fn changes(expected: &str, actual: &str) -> Vec<String> {
     let (Ok(expected), Ok(actual)) = (serde_json::from_str(expected), serde_json::from_str(actual)) else {
@@ -14,15 +14,15 @@ pub fn changes(expected: &str, actual: &str) -> Vec<String> {
     leaves(&expected, "", &mut old);
     leaves(&actual, "", &mut new);
     let paths: std::collections::BTreeSet<&String> = old.keys().chain(new.keys()).collect();
-    let told = |value: Option<&String>| value.map_or("not there", String::as_str).to_owned();
+    let shown = |value: Option<&String>| value.map_or("not there", String::as_str).to_owned();
     paths
         .into_iter()
         .filter(|path| old.get(*path) != new.get(*path))
-        .map(|path| format!("{path}: {} -> {}", told(old.get(path)), told(new.get(path))))
+        .map(|path| format!("{path}: {} -> {}", shown(old.get(path)), shown(new.get(path))))
         .collect()
 }
 
-/// Every value that is no table, by its path.
+/// Adds every value that is no object, by its path.
 fn leaves(value: &Value, path: &str, out: &mut BTreeMap<String, String>) {
     match value {
         Value::Object(table) => {

@@ -1,4 +1,4 @@
-//! Cryptomatte 1.2 (Friedman and Jones 2015): mattes of everything that has a name.
+//! Cryptomatte 1.2 (Friedman and Jones 2015): ID mattes by name.
 
 use std::io::Cursor;
 
@@ -11,15 +11,15 @@ fn murmur(name: &str) -> u32 {
     murmur3::murmur3_32(&mut Cursor::new(name.as_bytes()), 0).unwrap_or(0)
 }
 
-/// The id of a name: its hash, made the bits of a float that is neither subnormal nor infinite nor NaN.
+/// The ID of a name: its hash, adjusted to be the bits of a normal float.
 fn id(name: &str) -> u32 {
     let hash = murmur(name);
     let exponent = hash >> 23 & 255;
     if exponent == 0 || exponent == 255 { hash ^ 1 << 23 } else { hash }
 }
 
-/// Adds the mattes of `ranks` under the name `layer`; an id of `i + 1` there is `names[i]`. Only names that are seen
-/// are listed.
+/// Adds the mattes of `ranks` as the Cryptomatte layer `layer`; the ID `i + 1` in `ranks` is `names[i]`. The manifest lists only
+/// names that occur.
 pub fn add_mattes(picture: &mut Layers, layer: &str, names: &[String], ranks: &[Ranks]) {
     let ids: Vec<f32> = names.iter().map(|name| f32::from_bits(id(name))).collect();
     let mut is_seen = vec![false; names.len()];

@@ -1,4 +1,4 @@
-//! OpenEXR in and out, and skies (OpenEXR or Radiance HDR) in.
+//! OpenEXR decoding and encoding; decoding of skies (OpenEXR or Radiance HDR).
 
 use std::io::{self, Cursor, Seek, Write};
 
@@ -12,27 +12,71 @@ use exr::prelude::{
     ReadLayers, Text, Vec2, WritableImage, f16, read,
 };
 
+use super::PictureError;
 use super::picture::{MOST_BYTES, MOST_SIDE};
-use crate::raster::{Channel, Layers, Panorama, Window};
+use crate::raster::{Channel, DataWindow, Layers, Panorama};
 
-/// Refuses what would not fit, before anything is allocated.
-fn check_size(width: usize, height: usize, channels: usize) -> Result<(), String> {
+/// Why an OpenEXR picture cannot be decoded.
+#[derive(Debug, thiserror::Error)]
+pub enum ExrError {
+    /// It exceeds the limits.
+    #[error("it is {width} by {height} with {channels} channels, too large to read")]
+    TooLarge {
+        /// Pixels in a row.
+        width: usize,
+        /// Rows.
+        height: usize,
+        /// The number of channels.
+        channels: usize,
+    },
+    /// Not OpenEXR, truncated, damaged, or deep data.
+    #[error("it is no OpenEXR picture that can be read: {0}")]
+    Decode(#[from] exr::error::Error),
+    /// It has no layer.
+    #[error("it has no layer")]
+    Empty,
+    /// Channels have fewer samples than pixels.
+    #[error("it has subsampled channels, which are not read")]
+    Subsampled,
+}
+
+/// Why a picture is no sky.
+#[derive(Debug, thiserror::Error)]
+pub enum PanoramaError {
+    /// It is no OpenEXR picture.
+    #[error(transparent)]
+    Exr(#[from] ExrError),
+    /// It is no other picture.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// Colours are missing.
+    #[error("it has no channels R, G and B")]
+    NoColours,
+    /// It is not equirectangular.
+    #[error("a sky is twice as wide as high, this is {0} by {1}")]
+    Aspect(u32, u32),
+    /// A side is 0.
+    #[error("it has no pixels")]
+    Empty,
+}
+
+/// Checks the limits before anything is allocated.
+fn check_size(width: usize, height: usize, channels: usize) -> Result<(), ExrError> {
     let most = MOST_SIDE as usize;
     let bytes = (width as u64).saturating_mul(height as u64).saturating_mul(channels as u64 * 4);
     if width > most || height > most || bytes > MOST_BYTES {
-        return Err(format!("it is {width} by {height} with {channels} channels, too large to read"));
+        return Err(ExrError::TooLarge { width, height, channels });
     }
     Ok(())
 }
 
-/// The first layer of an OpenEXR picture, with every channel and text.
+/// Decodes the first layer of an OpenEXR picture with all channels and texts.
 ///
 /// # Errors
-/// A sentence: not OpenEXR, truncated, too large, deep or subsampled.
-pub fn decode_exr(bytes: &[u8]) -> Result<Layers, String> {
-    let wrong = |error: exr::error::Error| format!("it is no OpenEXR picture that can be read: {error}");
-    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(wrong)?;
-    let header = meta.headers.first().ok_or("it has no layer")?;
+/// [`ExrError`].
+pub fn decode_exr(bytes: &[u8]) -> Result<Layers, ExrError> {
+    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false)?;
+    let header = meta.headers.first().ok_or(ExrError::Empty)?;
     check_size(header.layer_size.width(), header.layer_size.height(), header.channels.list.len())?;
     let image = read()
         .no_deep_data()
@@ -40,8 +84,7 @@ pub fn decode_exr(bytes: &[u8]) -> Result<Layers, String> {
         .all_channels()
         .first_valid_layer()
         .all_attributes()
-        .from_buffered(Cursor::new(bytes))
-        .map_err(wrong)?;
+        .from_buffered(Cursor::new(bytes))?;
     let layer = image.layer_data;
     let pixels = layer.size.width() * layer.size.height();
     let channels: Vec<Channel> = layer
@@ -55,7 +98,7 @@ pub fn decode_exr(bytes: &[u8]) -> Result<Layers, String> {
         })
         .collect();
     if channels.iter().any(|c| c.values.len() != pixels) {
-        return Err("it has subsampled channels, which are not read".to_owned());
+        return Err(ExrError::Subsampled);
     }
     let mut texts = Vec::new();
     if let Some(text) = &layer.attributes.software_name {
@@ -71,13 +114,13 @@ pub fn decode_exr(bytes: &[u8]) -> Result<Layers, String> {
     }
     let size = [layer.size.width() as u32, layer.size.height() as u32];
     let (at, display) = (layer.attributes.layer_position, image.attributes.display_window);
-    let mut window = Window {
+    let mut window = DataWindow {
         at: [at.x(), at.y()],
         origin: [display.position.x(), display.position.y()],
         display: [display.size.width() as u32, display.size.height() as u32],
     };
     if (window.at, window.display) == (window.origin, size) && window.at == [0, 0] {
-        window = Window::default();
+        window = DataWindow::default();
     }
     let xy = |c: Chromaticities| [c.red, c.green, c.blue, c.white].map(|v| [v.0, v.1]);
     let chromaticities = image.attributes.chromaticities.map(|c| {
@@ -87,30 +130,31 @@ pub fn decode_exr(bytes: &[u8]) -> Result<Layers, String> {
     Ok(Layers { width: size[0], height: size[1], channels, texts, window, chromaticities })
 }
 
+/// Attributes by name: their order in the file is arbitrary.
 fn sorted<'a>(
     attributes: impl Iterator<Item = (&'a Text, &'a AttributeValue)>,
 ) -> std::collections::BTreeMap<String, &'a AttributeValue> {
     attributes.map(|(name, value)| (name.to_string(), value)).collect()
 }
 
-/// What an OpenEXR file says of its pixels.
+/// The header of an OpenEXR file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExrHead {
     /// Pixels in a row, and rows, of what is stored.
     pub size: [u32; 2],
-    /// Where they are in the whole picture.
-    pub window: Window,
+    /// Data window and display window.
+    pub window: DataWindow,
     /// Names of the channels, and whether they are stored in 16 bits.
     pub channels: Vec<(String, bool)>,
-    /// Keyword and text: `software` and `comments` become standard attributes, others attributes of their own.
+    /// Keyword and text: `software` and `comments` become standard attributes, others custom ones.
     pub texts: Vec<(String, String)>,
-    /// CIE xy of red, green, blue and white, where they are to be told.
+    /// CIE xy of red, green, blue and white; `None` leaves the attribute out.
     pub chromaticities: Option<[f32; 8]>,
 }
 
-/// Channels whose rows are computed as they are written, by name.
+/// Channels whose rows are computed as they are written.
 struct Rows<'a, F> {
-    /// In the order of their names, which the format wants.
+    /// Sorted by name, as the format requires.
     channels: Vec<(&'a str, bool, usize)>,
     fill: &'a F,
 }
@@ -145,7 +189,7 @@ impl<F: Fn(usize, usize, &mut [f32]) + Sync> ChannelsWriter for &Rows<'_, F> {
                 (self.fill)(channel, y, &mut values);
                 for &x in &values[left..] {
                     if is_half {
-                        // Nothing becomes infinite by having fewer bits.
+                        // Finite values stay finite.
                         let x = if x.is_finite() { x.clamp(-65504.0, 65504.0) } else { x };
                         bytes.extend(f16::from_f32(x).to_ne_bytes());
                     } else {
@@ -158,11 +202,11 @@ impl<F: Fn(usize, usize, &mut [f32]) + Sync> ChannelsWriter for &Rows<'_, F> {
     }
 }
 
-/// Writes a picture as one part, ZIP-compressed, which every reader accepts: `fill` is told a channel's index and a row,
-/// and fills in the values.
+/// Encodes a picture as one ZIP-compressed part, which every reader accepts. `fill` computes the values of a channel's row from
+/// the channel's index and the row's number.
 ///
 /// # Errors
-/// What `out` says.
+/// Those of `out`.
 pub fn encode_exr_rows(
     head: &ExrHead,
     fill: &(impl Fn(usize, usize, &mut [f32]) + Sync),
@@ -205,7 +249,7 @@ pub fn encode_exr_rows(
 /// [`encode_exr_rows`] of a picture in memory.
 ///
 /// # Errors
-/// What `out` says.
+/// Those of `out`.
 pub fn encode_exr(picture: &Layers, out: impl Write + Seek) -> io::Result<()> {
     let head = ExrHead {
         size: [picture.width, picture.height],
@@ -221,12 +265,12 @@ pub fn encode_exr(picture: &Layers, out: impl Write + Seek) -> io::Result<()> {
     encode_exr_rows(&head, &fill, out)
 }
 
-/// Are these the bytes of an OpenEXR file?
+/// Do `bytes` start with OpenEXR's magic number?
 pub(super) fn is_exr(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01])
 }
 
-/// Text in ASCII, which is all that attributes are sure to keep: other characters as in JSON, `\\u6728`.
+/// `text` with all but ASCII escaped as in JSON, `\\u6728`: readers preserve only ASCII attributes.
 fn ascii(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -239,26 +283,26 @@ fn ascii(text: &str) -> String {
     out
 }
 
-/// The sky in an OpenEXR or Radiance HDR picture: its `R`, `G`, `B`, twice as wide as high.
+/// Decodes an equirectangular sky from an OpenEXR or Radiance HDR picture.
 ///
 /// # Errors
-/// A sentence: neither, truncated, too large, without colours, or of another shape.
-pub fn decode_panorama(bytes: &[u8]) -> Result<Panorama, String> {
+/// [`PanoramaError`].
+pub fn decode_panorama(bytes: &[u8]) -> Result<Panorama, PanoramaError> {
     let (width, height, pixels) = if is_exr(bytes) {
         let layers = decode_exr(bytes)?;
-        (layers.width, layers.height, layers.pixels(["R", "G", "B"]).ok_or("it has no channels R, G and B")?)
+        (layers.width, layers.height, layers.pixels(["R", "G", "B"]).ok_or(PanoramaError::NoColours)?)
     } else {
         let picture = super::picture::decode(bytes)?.into_rgb32f();
         let (width, height) = picture.dimensions();
         (width, height, picture.pixels().map(|p| p.0).collect())
     };
     if width != height * 2 {
-        return Err(format!("a sky is twice as wide as high, this is {width} by {height}"));
+        return Err(PanoramaError::Aspect(width, height));
     }
-    // Suns may be brighter than 16 bits can tell.
+    // The range of 16-bit floats: suns may be brighter.
     let light = |x: f32| if x.is_nan() { 0.0 } else { x.clamp(0.0, 65504.0) };
     let pixels = pixels.into_iter().map(|p| p.map(light)).collect();
-    Panorama::new(width, height, pixels).ok_or_else(|| "it has no pixels".to_owned())
+    Panorama::new(width, height, pixels).ok_or(PanoramaError::Empty)
 }
 
 #[cfg(test)]
@@ -280,7 +324,7 @@ mod tests {
                 ("comments".to_owned(), "{\"a\":1}".to_owned()),
                 ("cryptomatte/1/name".to_owned(), "x".to_owned()),
             ],
-            window: Window { at: [-1, 4], origin: [0, 0], display: [12, 8] },
+            window: DataWindow { at: [-1, 4], origin: [0, 0], display: [12, 8] },
             chromaticities: Some([0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329]),
         };
         let mut bytes = Cursor::new(Vec::new());

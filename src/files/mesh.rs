@@ -1,4 +1,4 @@
-//! Meshes in: Wavefront OBJ, and PLY.
+//! Decoding of meshes: Wavefront OBJ and PLY.
 
 use std::io::Cursor;
 
@@ -8,84 +8,136 @@ use ply_rs_bw::ply::{DefaultElement, Property};
 use crate::math::DVec3;
 use crate::model::Mesh;
 
-/// The triangles in the file called `name`: PLY by its ending, else OBJ.
+/// Why a mesh cannot be decoded.
+#[derive(Debug, thiserror::Error)]
+pub enum MeshError {
+    /// It is not PLY.
+    #[error("it is no PLY: {0}")]
+    Ply(String),
+    /// Coordinates of a vertex are missing.
+    #[error("a vertex has no x, y, z")]
+    NoCoordinates,
+    /// Indices of a face are missing.
+    #[error("a face has no list of corners")]
+    NoCorners,
+    /// A face has an index out of range.
+    #[error("a face names a corner that is not among the {0}")]
+    Corner(usize),
+    /// A text file is not UTF-8.
+    #[error("it is not text")]
+    NotText,
+    /// It is not OBJ.
+    #[error(transparent)]
+    Obj(#[from] tobj::LoadError),
+    /// A face has an index that is malformed or out of range.
+    #[error("line {line}: a face has the index {index:?}, where {count} are given so far")]
+    Index {
+        /// The line, from 1.
+        line: usize,
+        /// The index.
+        index: String,
+        /// The number of such elements before.
+        count: i64,
+    },
+    /// It has no faces.
+    #[error("it has no faces")]
+    NoFaces,
+    /// A coordinate is infinite or not a number.
+    #[error("it has coordinates that are not numbers")]
+    NotFinite,
+}
+
+/// Decodes the triangles of the file called `name`: PLY by its extension, otherwise OBJ.
 ///
 /// # Errors
-/// As [`decode_obj`] and [`decode_ply`].
-pub fn decode_mesh(name: &str, bytes: &[u8]) -> Result<Mesh, String> {
+/// [`MeshError`].
+pub fn decode_mesh(name: &str, bytes: &[u8]) -> Result<Mesh, MeshError> {
     if name.to_ascii_lowercase().ends_with(".ply") { decode_ply(bytes) } else { decode_obj(bytes) }
 }
 
-/// The triangles in a PLY file (text or binary), as they are: z up. Polygons are cut into fans.
+/// The number in a PLY property.
+fn number(property: Option<&Property>) -> Option<f64> {
+    Some(match *property? {
+        Property::Char(x) => f64::from(x),
+        Property::UChar(x) => f64::from(x),
+        Property::Short(x) => f64::from(x),
+        Property::UShort(x) => f64::from(x),
+        Property::Int(x) => f64::from(x),
+        Property::UInt(x) => f64::from(x),
+        Property::Float(x) => f64::from(x),
+        Property::Double(x) => x,
+        _ => return None,
+    })
+}
+
+/// The indices in a PLY property.
+fn indices(property: &Property) -> Option<Vec<i64>> {
+    Some(match property {
+        Property::ListChar(list) => list.iter().map(|&i| i64::from(i)).collect(),
+        Property::ListUChar(list) => list.iter().map(|&i| i64::from(i)).collect(),
+        Property::ListShort(list) => list.iter().map(|&i| i64::from(i)).collect(),
+        Property::ListUShort(list) => list.iter().map(|&i| i64::from(i)).collect(),
+        Property::ListInt(list) => list.iter().map(|&i| i64::from(i)).collect(),
+        Property::ListUInt(list) => list.iter().map(|&i| i64::from(i)).collect(),
+        _ => return None,
+    })
+}
+
+/// Decodes the triangles of a PLY file (text or binary), with coordinates unchanged: z up. Polygons become fans.
 ///
 /// # Errors
-/// A sentence: no PLY, no faces, or faces that name corners that are not there.
-pub fn decode_ply(bytes: &[u8]) -> Result<Mesh, String> {
-    // Rows are read one by one, so that a header that promises too many runs out of bytes instead of memory.
-    let ply =
-        Parser::<DefaultElement>::new().read_ply(&mut Cursor::new(bytes)).map_err(|e| format!("it is no PLY: {e}"))?;
-    let number = |property: Option<&Property>| -> Option<f64> {
-        Some(match *property? {
-            Property::Char(x) => f64::from(x),
-            Property::UChar(x) => f64::from(x),
-            Property::Short(x) => f64::from(x),
-            Property::UShort(x) => f64::from(x),
-            Property::Int(x) => f64::from(x),
-            Property::UInt(x) => f64::from(x),
-            Property::Float(x) => f64::from(x),
-            Property::Double(x) => x,
-            _ => return None,
-        })
-    };
-    let corners = |property: &Property| -> Option<Vec<i64>> {
-        Some(match property {
-            Property::ListChar(list) => list.iter().map(|&i| i64::from(i)).collect(),
-            Property::ListUChar(list) => list.iter().map(|&i| i64::from(i)).collect(),
-            Property::ListShort(list) => list.iter().map(|&i| i64::from(i)).collect(),
-            Property::ListUShort(list) => list.iter().map(|&i| i64::from(i)).collect(),
-            Property::ListInt(list) => list.iter().map(|&i| i64::from(i)).collect(),
-            Property::ListUInt(list) => list.iter().map(|&i| i64::from(i)).collect(),
-            _ => return None,
-        })
-    };
+/// [`MeshError`].
+pub fn decode_ply(bytes: &[u8]) -> Result<Mesh, MeshError> {
+    // Rows are read one by one, so that a header with excessive counts runs out of bytes instead of memory.
+    let ply = Parser::<DefaultElement>::new().read_ply(&mut Cursor::new(bytes));
+    let ply = ply.map_err(|error| MeshError::Ply(error.to_string()))?;
     let mut mesh = Mesh::default();
     for row in ply.payload.get("vertex").into_iter().flatten() {
         let [x, y, z] = ["x", "y", "z"].map(|axis| number(row.get(axis)));
-        let (Some(x), Some(y), Some(z)) = (x, y, z) else { return Err("a vertex has no x, y, z".to_owned()) };
+        let (Some(x), Some(y), Some(z)) = (x, y, z) else { return Err(MeshError::NoCoordinates) };
         mesh.points.push(DVec3::new(x, y, z));
     }
     for row in ply.payload.get("face").into_iter().flatten() {
-        let list = ["vertex_indices", "vertex_index"].iter().find_map(|name| row.get(*name)).and_then(corners);
-        let list = list.ok_or("a face has no list of corners")?;
+        let list = ["vertex_indices", "vertex_index"].iter().find_map(|name| row.get(*name)).and_then(indices);
+        let list = list.ok_or(MeshError::NoCorners)?;
         if list.iter().any(|&i| i < 0 || i >= mesh.points.len() as i64) {
-            return Err(format!("a face names a corner that is not among the {}", mesh.points.len()));
+            return Err(MeshError::Corner(mesh.points.len()));
         }
         let list: Vec<u32> = list.into_iter().map(|i| i as u32).collect();
         let fan = (1..list.len().saturating_sub(1)).map(|i| [list[0], list[i], list[i + 1]]);
-        mesh.triangles.extend(fan.filter(|[a, b, c]| a != b && b != c && c != a));
+        mesh.triangles.extend(fan.filter(is_proper));
     }
+    checked(mesh)
+}
+
+/// Has the triangle three distinct corners?
+fn is_proper([a, b, c]: &[u32; 3]) -> bool {
+    a != b && b != c && c != a
+}
+
+/// `mesh` if it has faces and finite coordinates.
+fn checked(mesh: Mesh) -> Result<Mesh, MeshError> {
     if mesh.triangles.is_empty() {
-        return Err("it has no faces".to_owned());
+        return Err(MeshError::NoFaces);
     }
     if !mesh.points.iter().all(|p| p.is_finite()) {
-        return Err("it has coordinates that are not numbers".to_owned());
+        return Err(MeshError::NotFinite);
     }
     Ok(mesh)
 }
 
-/// The triangles in an OBJ file, turned from its y up to z up. Polygons are cut into triangles; where every corner has
-/// a normal the mesh is smooth.
+/// Decodes the triangles of an OBJ file, rotated from y up to z up. Polygons are triangulated; the mesh is smooth where every
+/// corner has a normal.
 ///
 /// # Errors
-/// A sentence: no OBJ, or no faces.
-pub fn decode_obj(bytes: &[u8]) -> Result<Mesh, String> {
-    let text = std::str::from_utf8(bytes).map_err(|_| "it is not text".to_owned())?;
+/// [`MeshError`].
+pub fn decode_obj(bytes: &[u8]) -> Result<Mesh, MeshError> {
+    let text = std::str::from_utf8(bytes).map_err(|_| MeshError::NotText)?;
     let text = faces_only(text)?;
     let options = tobj::LoadOptions { single_index: true, triangulate: true, ..tobj::LoadOptions::default() };
     // Materials are the scene's.
     let no_materials = |_: &std::path::Path| tobj::load_mtl_buf(&mut Cursor::new(&[][..]));
-    let (models, _) = tobj::load_obj_buf(&mut Cursor::new(text.as_bytes()), &options, no_materials)
-        .map_err(|error| error.to_string())?;
+    let (models, _) = tobj::load_obj_buf(&mut Cursor::new(text.as_bytes()), &options, no_materials)?;
     let points = |numbers: &[f32]| -> Vec<DVec3> {
         let turned = |p: &[f32]| DVec3::new(f64::from(p[0]), -f64::from(p[2]), f64::from(p[1]));
         numbers.chunks_exact(3).map(turned).collect()
@@ -99,20 +151,14 @@ pub fn decode_obj(bytes: &[u8]) -> Result<Mesh, String> {
             mesh.normals.extend(points(&part.normals).into_iter().map(|n| n.normalize_or(DVec3::Z)));
         }
         let triangles = part.indices.chunks_exact(3).map(|t| [first + t[0], first + t[1], first + t[2]]);
-        mesh.triangles.extend(triangles.filter(|[a, b, c]| a != b && b != c && c != a));
+        mesh.triangles.extend(triangles.filter(is_proper));
     }
-    if mesh.triangles.is_empty() {
-        return Err("it has no faces".to_owned());
-    }
-    if !mesh.points.iter().all(|p| p.is_finite()) {
-        return Err("it has coordinates that are not numbers".to_owned());
-    }
-    Ok(mesh)
+    checked(mesh)
 }
 
-/// The lines of an OBJ file that faces are made of, each index known to be there: `tobj` takes lines and points for
-/// faces, and trusts indices.
-fn faces_only(text: &str) -> Result<String, String> {
+/// The lines of an OBJ file that concern faces, with validated indices: `tobj` would take lines and points for faces, and does
+/// not check indices.
+fn faces_only(text: &str) -> Result<String, MeshError> {
     let mut kept = String::with_capacity(text.len());
     let mut counts = [0_i64; 3];
     for (number, line) in (1..).zip(text.lines()) {
@@ -126,9 +172,7 @@ fn faces_only(text: &str) -> Result<String, String> {
                     let (text, count) = index;
                     let is_there = text.parse::<i64>().is_ok_and(|i| i != 0 && (-count..=count).contains(&i));
                     if !text.is_empty() && !is_there {
-                        return Err(format!(
-                            "line {number}: a face has the index {text:?}, where {count} are given so far"
-                        ));
+                        return Err(MeshError::Index { line: number, index: text.to_owned(), count });
                     }
                 }
             }
@@ -167,7 +211,7 @@ mod tests {
         assert_eq!(mesh.triangles.len(), 2);
         assert_eq!(mesh.points[2], DVec3::new(1.0, 0.0, 2.0));
         assert!(mesh.normals.is_empty());
-        assert!(decode_obj(b"v 0 0 0\n").unwrap_err().contains("no faces"));
+        assert!(matches!(decode_obj(b"v 0 0 0\n"), Err(MeshError::NoFaces)));
         assert!(decode_obj(b"f 1 2 3\n").is_err());
         assert!(decode_obj(b"\xff\xfe").is_err());
         let three = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\n";

@@ -1,4 +1,4 @@
-//! Pictures: PNG in and out, JPEG in.
+//! Pictures: PNG and JPEG decoding, PNG encoding.
 
 use std::io::{self, Cursor, Write};
 
@@ -7,10 +7,27 @@ use image::{DynamicImage, ImageReader, Limits};
 use crate::math::from_srgb;
 use crate::raster::{Channel, Grey, Layers};
 
-/// Pixels along a side of a picture that is read, at most.
+/// Most pixels along a side of a picture that is decoded.
 pub(super) const MOST_SIDE: u32 = 32_768;
-/// Memory that decoding a picture may take.
+/// Memory limit of decoding a picture, in bytes.
 pub(super) const MOST_BYTES: u64 = 2 << 30;
+
+/// Why a picture cannot be decoded.
+#[derive(Debug, thiserror::Error)]
+pub enum PictureError {
+    /// The format is unknown.
+    #[error("it is not a PNG or JPEG picture")]
+    Format,
+    /// Reading failed.
+    #[error(transparent)]
+    Read(#[from] io::Error),
+    /// It is truncated, damaged or too large.
+    #[error("it cannot be decoded: {0}")]
+    Decode(#[from] image::ImageError),
+    /// A side is 0.
+    #[error("it has no pixels")]
+    Empty,
+}
 
 /// A picture of 8 bits a channel, not premultiplied, row by row from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,7 +47,7 @@ impl Rgba {
         Self { width, height, bytes: vec![255; width as usize * height as usize * 4] }
     }
 
-    /// Copies `other`, laid over white, to `(x, y)`; what falls outside is lost.
+    /// Composites `other` over it with its corner at `(x, y)`, clipped.
     pub fn paste(&mut self, other: &Self, x: u32, y: u32) {
         for row in 0..other.height.min(self.height.saturating_sub(y)) {
             for column in 0..other.width.min(self.width.saturating_sub(x)) {
@@ -47,45 +64,46 @@ impl Rgba {
     }
 }
 
-pub(super) fn decode(bytes: &[u8]) -> Result<DynamicImage, String> {
-    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+/// Decodes a picture in any known format, within the limits.
+pub(super) fn decode(bytes: &[u8]) -> Result<DynamicImage, PictureError> {
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
     if reader.format().is_none() {
-        return Err("it is not a PNG or JPEG picture".to_owned());
+        return Err(PictureError::Format);
     }
     let mut limits = Limits::default();
     limits.max_image_width = Some(MOST_SIDE);
     limits.max_image_height = Some(MOST_SIDE);
     limits.max_alloc = Some(MOST_BYTES);
     reader.limits(limits);
-    reader.decode().map_err(|e| format!("it cannot be decoded: {e}"))
+    Ok(reader.decode()?)
 }
 
-/// The greyscale picture in `bytes` (PNG or JPEG); colours become their luma, values stay as encoded.
+/// Decodes a PNG or JPEG picture to greyscale: the luma of colours, values as encoded.
 ///
 /// # Errors
-/// A sentence: no picture, truncated, or too large.
-pub fn decode_grey(bytes: &[u8]) -> Result<Grey, String> {
+/// [`PictureError`].
+pub fn decode_grey(bytes: &[u8]) -> Result<Grey, PictureError> {
     let picture = decode(bytes)?.into_luma16();
     let (width, height) = picture.dimensions();
     let values = picture.into_raw().into_iter().map(|v| f32::from(v) / 65535.0).collect();
-    Grey::new(width, height, values).ok_or_else(|| "it has no pixels".to_owned())
+    Grey::new(width, height, values).ok_or(PictureError::Empty)
 }
 
-/// The PNG picture in `bytes`.
+/// Decodes a PNG picture.
 ///
 /// # Errors
-/// As [`decode_grey`].
-pub fn decode_png(bytes: &[u8]) -> Result<Rgba, String> {
+/// [`PictureError`].
+pub fn decode_png(bytes: &[u8]) -> Result<Rgba, PictureError> {
     let picture = decode(bytes)?.into_rgba8();
     let (width, height) = picture.dimensions();
     Ok(Rgba { width, height, bytes: picture.into_raw() })
 }
 
-/// The picture in `bytes` (PNG or JPEG) as channels `R G B A` in linear light, premultiplied, with its texts.
+/// Decodes a PNG or JPEG picture to channels `R G B A` in linear light, premultiplied, with its texts.
 ///
 /// # Errors
-/// As [`decode_grey`].
-pub fn decode_linear(bytes: &[u8]) -> Result<Layers, String> {
+/// [`PictureError`].
+pub fn decode_linear(bytes: &[u8]) -> Result<Layers, PictureError> {
     let picture = decode(bytes)?.into_rgba16();
     let (width, height) = picture.dimensions();
     let value = |v: u16| f64::from(v) / 65535.0;
@@ -101,7 +119,7 @@ pub fn decode_linear(bytes: &[u8]) -> Result<Layers, String> {
     Ok(Layers { width, height, channels, texts: png_texts(bytes), ..Layers::default() })
 }
 
-/// The texts of a PNG picture; none of any other.
+/// The texts of a PNG picture; empty for other formats.
 #[must_use]
 pub fn png_texts(bytes: &[u8]) -> Vec<(String, String)> {
     let Ok(reader) = png::Decoder::new(Cursor::new(bytes)).read_info() else { return Vec::new() };
@@ -120,7 +138,7 @@ pub fn resize(picture: &Rgba, width: u32, height: u32) -> Rgba {
     Rgba { width, height, bytes: scaled.into_raw() }
 }
 
-/// What a PNG file says of its pixels.
+/// The header of a PNG file.
 #[derive(Clone, Copy, Debug)]
 pub struct PngHead<'a> {
     /// Pixels in a row, and rows.
@@ -135,10 +153,10 @@ pub struct PngHead<'a> {
     pub texts: &'a [(&'a str, &'a str)],
 }
 
-/// Writes `picture` as a PNG of 8 bits a channel with sRGB colours and these texts (keyword, text).
+/// Encodes `picture` as a PNG of 8 bits a channel with sRGB colours and these texts (keyword, text).
 ///
 /// # Errors
-/// What `out` says.
+/// Those of `out`.
 pub fn encode_png(picture: &Rgba, texts: &[(&str, &str)], out: impl Write) -> io::Result<()> {
     let size = [picture.width, picture.height];
     let head = PngHead { size, is_deep: false, has_alpha: true, profile: None, texts };
@@ -148,17 +166,17 @@ pub fn encode_png(picture: &Rgba, texts: &[(&str, &str)], out: impl Write) -> io
 /// [`encode_png`] of 16 bits a channel: four values a pixel.
 ///
 /// # Errors
-/// What `out` says.
+/// Those of `out`.
 pub fn encode_png16(size: [u32; 2], values: &[u16], texts: &[(&str, &str)], out: impl Write) -> io::Result<()> {
     let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_be_bytes()).collect();
     let head = PngHead { size, is_deep: true, has_alpha: true, profile: None, texts };
     encode_png_rows(&head, std::iter::once(&bytes[..]), out)
 }
 
-/// Writes a PNG from parts of any number of rows, in order.
+/// Encodes a PNG from consecutive parts of any number of rows.
 ///
 /// # Errors
-/// What `out` says.
+/// Those of `out`.
 pub fn encode_png_rows<T: AsRef<[u8]>>(
     head: &PngHead<'_>,
     parts: impl Iterator<Item = T>,
@@ -198,6 +216,6 @@ mod tests {
         encode_png(&picture, &[("Software", "a test")], &mut bytes).unwrap();
         assert_eq!(decode_png(&bytes).unwrap(), picture);
         assert!(decode_png(&bytes[..40]).is_err());
-        assert!(decode_grey(b"no picture").unwrap_err().contains("not a PNG"));
+        assert!(matches!(decode_grey(b"no picture"), Err(PictureError::Format)));
     }
 }

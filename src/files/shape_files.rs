@@ -28,7 +28,7 @@ impl ShapeFiles for Folder {
 
     fn picture_outlines(&self, file: &str, threshold: f64, bright: bool) -> Result<Rings, String> {
         let wrong = |error: &str| format!("cannot use the picture `{file}`: {error}");
-        let grey = decode_grey(&self.read(file)?).map_err(|error| wrong(&error))?;
+        let grey = decode_grey(&self.read(file)?).map_err(|error| wrong(&error.to_string()))?;
         let [width, height] = grey.size();
         let sign = if bright { -1.0 } else { 1.0 };
         // All beyond the picture is outside, and a value just at the threshold is not on the line.

@@ -1,4 +1,4 @@
-//! SVG: sketches in, schematics to pixels.
+//! SVG: decoding of sketches, rasterisation of schematics; outlines of letters.
 
 use resvg::tiny_skia::{self, PathSegment, Pixmap, Point, Transform};
 use resvg::usvg::{self, Group, Node, Tree};
@@ -6,10 +6,39 @@ use resvg::usvg::{self, Group, Node, Tree};
 use super::Rgba;
 use crate::math::DVec2;
 
-/// Straight pieces that a curve becomes.
+/// Line segments that approximate a Bezier curve.
 const PIECES: u32 = 24;
-/// More points than this in a sketch are refused.
+/// Most points of a sketch.
 const MOST_POINTS: usize = 1_000_000;
+
+/// Why an SVG or a font is of no use.
+#[derive(Debug, thiserror::Error)]
+pub enum SketchError {
+    /// It is not SVG.
+    #[error("it is not an SVG picture: {0}")]
+    Svg(usvg::Error),
+    /// It has no paths.
+    #[error("it has no paths")]
+    NoPaths,
+    /// It exceeds the limit.
+    #[error("it has more than {MOST_POINTS} points")]
+    TooManyPoints,
+    /// It is not a font.
+    #[error("it is not a TrueType or OpenType font")]
+    Font,
+    /// The text cannot be laid out.
+    #[error("its letters cannot be set: {0}")]
+    Layout(usvg::Error),
+    /// The text has no visible glyph.
+    #[error("it has no outlines for {0:?}")]
+    NoOutlines(String),
+    /// A schematic is not SVG.
+    #[error(transparent)]
+    Draw(usvg::Error),
+    /// The pixels do not fit into memory.
+    #[error("a picture of {0} x {1} is too large")]
+    TooLarge(u32, u32),
+}
 
 /// The outlines of a sketch, in fractions of its page: x to the right, y up.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,7 +50,7 @@ pub struct Page {
 }
 
 impl Page {
-    /// The middle of each closed outline, the end of each open one.
+    /// The centre of the bounding box of each closed outline, the end of each open one.
     pub fn points(&self) -> impl Iterator<Item = DVec2> + '_ {
         self.lines.iter().filter_map(|(line, is_closed)| {
             if !is_closed {
@@ -34,24 +63,24 @@ impl Page {
     }
 }
 
-/// The strokes and outlines of the SVG in `bytes`.
+/// Decodes the strokes and outlines of an SVG.
 ///
 /// # Errors
-/// A sentence: no SVG, no paths, or too many points.
-pub fn decode_sketch(bytes: &[u8]) -> Result<Page, String> {
-    let tree =
-        Tree::from_data(bytes, &usvg::Options::default()).map_err(|e| format!("it is not an SVG picture: {e}"))?;
+/// [`SketchError::Svg`], [`SketchError::NoPaths`], [`SketchError::TooManyPoints`].
+pub fn decode_sketch(bytes: &[u8]) -> Result<Page, SketchError> {
+    let tree = Tree::from_data(bytes, &usvg::Options::default()).map_err(SketchError::Svg)?;
     let size = tree.size();
     let mut page = Page { lines: Vec::new(), aspect: f64::from(size.width()) / f64::from(size.height()) };
     let mut points = 0;
     visit(tree.root(), &tree, &mut page, &mut points)?;
     if page.lines.is_empty() {
-        return Err("it has no paths".to_owned());
+        return Err(SketchError::NoPaths);
     }
     Ok(page)
 }
 
-fn visit(group: &Group, tree: &Tree, page: &mut Page, points: &mut usize) -> Result<(), String> {
+/// Adds the paths of `group` to the page, and their points to the count.
+fn visit(group: &Group, tree: &Tree, page: &mut Page, points: &mut usize) -> Result<(), SketchError> {
     for node in group.children() {
         match node {
             Node::Group(group) => visit(group, tree, page, points)?,
@@ -60,7 +89,7 @@ fn visit(group: &Group, tree: &Tree, page: &mut Page, points: &mut usize) -> Res
         }
         *points += page.lines.last().map_or(0, |(line, _)| line.len());
         if *points > MOST_POINTS {
-            return Err(format!("it has more than {MOST_POINTS} points"));
+            return Err(SketchError::TooManyPoints);
         }
     }
     Ok(())
@@ -75,7 +104,7 @@ fn flatten(path: &tiny_skia::Path, transform: Transform, tree: &Tree, page: &mut
     });
 }
 
-/// Adds the subpaths of `path`, each point where `place` puts it, curves cut into pieces.
+/// Adds the subpaths of `path` as polylines, with points transformed by `place`.
 fn subpaths(path: &tiny_skia::Path, lines: &mut Vec<(Vec<DVec2>, bool)>, place: &dyn Fn(Point) -> DVec2) {
     let mut line: Vec<DVec2> = Vec::new();
     let mut last = Point::zero();
@@ -123,21 +152,21 @@ fn subpaths(path: &tiny_skia::Path, lines: &mut Vec<(Vec<DVec2>, bool)>, place: 
     end(&mut line, false);
 }
 
-/// Size of the em that letters are set in, before they are scaled.
+/// Font size at which letters are laid out, before scaling.
 const EM: f64 = 1000.0;
 
-/// The outlines of `text` in the font of the file `bytes` (TrueType or OpenType), a line for each of its own: with an em of 1, the first
-/// baseline at 0, x to the right and y up. Letters are kerned and joined as the font says.
+/// The outlines of `text`, shaped with the font in `bytes` (TrueType or OpenType), line by line: an em of 1, the first baseline at
+/// 0, x to the right, y up.
 ///
 /// # Errors
-/// A sentence: no font, or nothing to see in the text.
-pub fn letter_outlines(text: &str, bytes: &[u8]) -> Result<Vec<Vec<DVec2>>, String> {
+/// [`SketchError::Font`], [`SketchError::Layout`], [`SketchError::NoOutlines`].
+pub fn letter_outlines(text: &str, bytes: &[u8]) -> Result<Vec<Vec<DVec2>>, SketchError> {
     let mut options = usvg::Options::default();
     options.fontdb_mut().load_font_data(bytes.to_vec());
     let family = options.fontdb.faces().find_map(|face| face.families.first().map(|(name, _)| name.clone()));
     let face = options.fontdb.faces().next().map(|face| (face.weight.0, face.style));
     let (Some(family), Some((weight, style))) = (family, face) else {
-        return Err("it is not a TrueType or OpenType font".to_owned());
+        return Err(SketchError::Font);
     };
     let style = match style {
         usvg::fontdb::Style::Normal => "normal",
@@ -155,18 +184,19 @@ pub fn letter_outlines(text: &str, bytes: &[u8]) -> Result<Vec<Vec<DVec2>>, Stri
         r#"<svg xmlns="http://www.w3.org/2000/svg" width="1000" height="1000" font-family="{}" font-weight="{weight}" font-style="{style}" font-size="{EM}">{rows}</svg>"#,
         escaped(&family)
     );
-    let tree = Tree::from_str(&svg, &options).map_err(|e| format!("its letters cannot be set: {e}"))?;
+    let tree = Tree::from_str(&svg, &options).map_err(SketchError::Layout)?;
     let mut lines = Vec::new();
     letters(tree.root(), &mut lines);
     if lines.is_empty() {
-        return Err(format!("it has no outlines for {text:?}"));
+        return Err(SketchError::NoOutlines(text.to_owned()));
     }
     Ok(lines.into_iter().map(|(line, _)| line).collect())
 }
 
-/// Distance of baselines over the em.
+/// Distance between baselines, in ems.
 const LEADING: f64 = 1.2;
 
+/// Adds the outlines of the glyphs in `group`.
 fn letters(group: &Group, lines: &mut Vec<(Vec<DVec2>, bool)>) {
     for node in group.children() {
         match node {
@@ -181,19 +211,19 @@ fn letters(group: &Group, lines: &mut Vec<(Vec<DVec2>, bool)>) {
     }
 }
 
-/// Draws an SVG at its own size. `fonts` are font files that its texts may use.
+/// Rasterises an SVG at its own size. `fonts` are font files for its texts.
 ///
 /// # Errors
-/// A sentence: no SVG, or too large.
-pub fn draw_svg(svg: &str, fonts: &[&'static [u8]]) -> Result<Rgba, String> {
+/// [`SketchError::Draw`], [`SketchError::TooLarge`].
+pub fn draw_svg(svg: &str, fonts: &[&'static [u8]]) -> Result<Rgba, SketchError> {
     let mut options = usvg::Options::default();
     for font in fonts {
         options.fontdb_mut().load_font_data(font.to_vec());
     }
-    let tree = Tree::from_str(svg, &options).map_err(|e| e.to_string())?;
+    let tree = Tree::from_str(svg, &options).map_err(SketchError::Draw)?;
     let size = tree.size().to_int_size();
-    let mut pixels = Pixmap::new(size.width(), size.height())
-        .ok_or_else(|| format!("a picture of {} x {} is too large", size.width(), size.height()))?;
+    let mut pixels =
+        Pixmap::new(size.width(), size.height()).ok_or(SketchError::TooLarge(size.width(), size.height()))?;
     resvg::render(&tree, Transform::identity(), &mut pixels.as_mut());
     Ok(Rgba {
         width: size.width(),

@@ -1,8 +1,8 @@
-//! Boxes along the axes.
+//! Axis-aligned bounding boxes.
 
 use crate::math::DVec3;
 
-/// A box around something, along the axes.
+/// An axis-aligned bounding box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// The corner with the lowest coordinates.
@@ -12,28 +12,40 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The bounds of nothing: any union with it is the other.
+    /// The empty box, the identity of [`Bounds::union`].
     pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
 
-    /// The least box that holds both.
+    /// The smallest box that contains `points`.
+    #[must_use]
+    pub fn of_points(points: impl IntoIterator<Item = DVec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, Self::with_point)
+    }
+
+    /// The smallest box that contains it and `p`.
+    #[must_use]
+    pub fn with_point(self, p: DVec3) -> Self {
+        Self { min: self.min.min(p), max: self.max.max(p) }
+    }
+
+    /// The smallest box that contains both.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// The box around a ball.
+    /// The bounding box of a ball.
     #[must_use]
     pub fn of_ball(centre: DVec3, radius: f64) -> Self {
         Self { min: centre - radius, max: centre + radius }
     }
 
-    /// The same box elsewhere.
+    /// Translated by `by`.
     #[must_use]
     pub fn moved(self, by: DVec3) -> Self {
         Self { min: self.min + by, max: self.max + by }
     }
 
-    /// Larger by this on all sides.
+    /// Enlarged by `by` on every side.
     #[must_use]
     pub fn grown(self, by: f64) -> Self {
         Self { min: self.min - by, max: self.max + by }
@@ -60,13 +72,24 @@ impl Bounds {
         })
     }
 
-    /// Distance of `p` from it; 0 inside.
+    /// Distance of `p` from the box; 0 inside.
     #[must_use]
     pub fn distance(&self, p: DVec3) -> f64 {
-        (self.min - p).max(p - self.max).max(DVec3::ZERO).length()
+        self.offset(p).length()
     }
 
-    /// Does it hold nothing?
+    /// Square of [`Bounds::distance`].
+    #[must_use]
+    pub fn distance_squared(&self, p: DVec3) -> f64 {
+        self.offset(p).length_squared()
+    }
+
+    /// Distance of `p` from the box along each axis; 0 inside.
+    fn offset(&self, p: DVec3) -> DVec3 {
+        (self.min - p).max(p - self.max).max(DVec3::ZERO)
+    }
+
+    /// Is it empty along an axis?
     #[must_use]
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()

@@ -1,33 +1,51 @@
-//! Closed triangle meshes as shapes: which points are inside, and how far the surface is.
+//! Closed triangle meshes as shapes: point containment and signed distance.
 
 use std::collections::HashMap;
 
-use super::Bounds;
+use super::{Bounds, segment_distance};
 use crate::math::DVec3;
 
-/// Triangles in a leaf of the tree.
+/// Triangles in a leaf of the bounding volume hierarchy.
 const LEAF: usize = 4;
-/// A direction along which no edge of a mesh that people make lies: rays along it count crossings.
-const ASKEW: DVec3 = DVec3::new(0.348_155_311_911_395_6, 0.217_597_069_944_622_2, 0.911_834_006_311_001);
+/// Direction of the rays that count crossings: unlikely to be parallel to an edge or a face of a modelled mesh.
+const RAY: DVec3 = DVec3::new(0.348_155_311_911_395_6, 0.217_597_069_944_622_2, 0.911_834_006_311_001);
 
-/// A triangle mesh whose every edge joins two triangles that agree which side is out.
+/// Why a mesh encloses no solid.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ClosedMeshError {
+    /// It has no triangles.
+    #[error("the mesh has no triangles")]
+    Empty,
+    /// Edges do not join exactly two triangles of consistent orientation.
+    #[error(
+        "the mesh is open or its faces disagree which side is out: {open} of its {edges} edges do not join two faces; close it first"
+    )]
+    Open {
+        /// How many such edges there are.
+        open: usize,
+        /// How many edges there are.
+        edges: usize,
+    },
+}
+
+/// A closed, consistently oriented triangle mesh: every edge joins two triangles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedMesh {
     triangles: Vec<[DVec3; 3]>,
-    /// A box each, the children of i at 2 i + 1 and 2 i + 2, halving the triangles down to leaves.
+    /// A balanced binary tree of boxes; the children of i are 2 i + 1 and 2 i + 2.
     boxes: Vec<Bounds>,
 }
 
 impl ClosedMesh {
-    /// The solid inside these triangles.
+    /// The solid that `triangles` of indices of `points` enclose.
     ///
     /// # Errors
-    /// A sentence where the mesh is empty or open.
-    pub fn new(points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, String> {
+    /// [`ClosedMeshError`].
+    pub fn new(points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, ClosedMeshError> {
         if triangles.is_empty() {
-            return Err("the mesh has no triangles".to_owned());
+            return Err(ClosedMeshError::Empty);
         }
-        // Corners in one place are one: files often repeat them for their normals.
+        // Coincident vertices are one: files often repeat them for their normals.
         let mut named: HashMap<[u64; 3], u32> = HashMap::new();
         let mut name = |p: DVec3| {
             let next = named.len() as u32;
@@ -42,10 +60,7 @@ impl ClosedMesh {
         }
         let open = balance.values().filter(|&&sum| sum != 0).count();
         if open > 0 {
-            return Err(format!(
-                "the mesh is open or its faces disagree which side is out: {open} of its {} edges do not join two faces; close it first",
-                balance.len()
-            ));
+            return Err(ClosedMeshError::Open { open, edges: balance.len() });
         }
         let mut triangles: Vec<[DVec3; 3]> = triangles.iter().map(|t| t.map(|i| points[i as usize])).collect();
         let mut boxes = vec![Bounds::EMPTY; (2 * triangles.len()).next_power_of_two()];
@@ -53,7 +68,7 @@ impl ClosedMesh {
         Ok(Self { triangles, boxes })
     }
 
-    /// The box around it.
+    /// Its bounding box.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         self.boxes[0]
@@ -67,8 +82,8 @@ impl ClosedMesh {
         if self.contains(p) { -nearest } else { nearest }
     }
 
-    /// Lowers `nearest` to the distance of the triangles of a box: a node, its first triangle and how many it has. The nearer
-    /// half comes first, so that most others are left out.
+    /// Lowers `nearest` to the distance of the triangles of a node: its index, its first triangle and their number. The
+    /// nearer child is descended first, so that most others are pruned.
     fn nearest(&self, p: DVec3, [node, first, count]: [usize; 3], nearest: &mut f64) {
         if count <= LEAF {
             let distances = self.triangles[first..first + count].iter().map(|triangle| triangle_distance(p, triangle));
@@ -86,26 +101,27 @@ impl ClosedMesh {
         }
     }
 
+    /// Is `p` inside, by the parity of the crossings of a ray (Moeller and Trumbore 1997)?
     fn contains(&self, p: DVec3) -> bool {
         let mut is_inside = false;
         let is_ahead = |bounds: &Bounds| {
-            // The slabs of the box along the ray.
-            let (low, high) = ((bounds.min - p) / ASKEW, (bounds.max - p) / ASKEW);
+            // The slab test.
+            let (low, high) = ((bounds.min - p) / RAY, (bounds.max - p) / RAY);
             low.min(high).max_element().max(0.0) <= low.max(high).min_element()
         };
         self.visit(0, 0, self.triangles.len(), &mut |bounds| is_ahead(bounds), &mut |&[a, b, c]| {
             let (e1, e2, o) = (b - a, c - a, p - a);
-            let n = ASKEW.cross(e2);
+            let n = RAY.cross(e2);
             let det = e1.dot(n);
             let u = o.dot(n) / det;
             let q = o.cross(e1);
-            let v = ASKEW.dot(q) / det;
+            let v = RAY.dot(q) / det;
             is_inside ^= u >= 0.0 && v >= 0.0 && u + v < 1.0 && e2.dot(q) / det > 0.0;
         });
         is_inside
     }
 
-    /// Calls `leaf` with the triangles in every box that `enter` lets through.
+    /// Calls `leaf` with the triangles of every box for which `enter` is true.
     fn visit(
         &self,
         node: usize,
@@ -126,12 +142,12 @@ impl ClosedMesh {
     }
 }
 
+/// Sorts `triangles` into the subtree of `node`, halving at the median of the longest axis, and sets its boxes.
 fn build(triangles: &mut [[DVec3; 3]], node: usize, boxes: &mut Vec<Bounds>) {
     if boxes.len() <= node {
         boxes.resize(node + 1, Bounds::EMPTY);
     }
-    let corner = |p: DVec3| Bounds { min: p, max: p };
-    boxes[node] = triangles.iter().flatten().fold(Bounds::EMPTY, |all, &p| all.union(corner(p)));
+    boxes[node] = Bounds::of_points(triangles.iter().flatten().copied());
     if triangles.len() <= LEAF {
         return;
     }
@@ -145,14 +161,14 @@ fn build(triangles: &mut [[DVec3; 3]], node: usize, boxes: &mut Vec<Bounds>) {
     build(high, 2 * node + 2, boxes);
 }
 
-/// Distance of `p` from a triangle: of its plane where `p` is over it, else of the nearest edge.
+/// Distance of `p` from a triangle: from its plane where `p` projects into it, else from the nearest edge.
 fn triangle_distance(p: DVec3, &[a, b, c]: &[DVec3; 3]) -> f64 {
     let n = (b - a).cross(c - a);
     let is_over = [(a, b), (b, c), (c, a)].iter().all(|&(from, to)| n.cross(to - from).dot(p - from) >= 0.0);
     if is_over && n != DVec3::ZERO {
         return (p - a).dot(n).abs() / n.length();
     }
-    let edges = [(a, b), (b, c), (c, a)].map(|(from, to)| super::shape::segment_distance(p, from, to));
+    let edges = [(a, b), (b, c), (c, a)].map(|(from, to)| segment_distance(p, from, to));
     edges.into_iter().fold(f64::INFINITY, f64::min)
 }
 
@@ -160,7 +176,7 @@ fn triangle_distance(p: DVec3, &[a, b, c]: &[DVec3; 3]) -> f64 {
 mod tests {
     use super::*;
 
-    /// The unit cube's corners, and its faces as triangles with their fronts out.
+    /// The unit cube.
     pub fn cube() -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let points = Bounds { min: DVec3::ZERO, max: DVec3::ONE }.corners().to_vec();
         let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -177,7 +193,8 @@ mod tests {
             let expected = q.max(DVec3::ZERO).length() + q.max_element().min(0.0);
             assert!((mesh.distance(p) - expected).abs() < 1e-12, "{p}: {} {expected}", mesh.distance(p));
         }
-        assert!(ClosedMesh::new(points.clone(), triangles[1..].to_vec()).unwrap_err().contains("open"));
-        assert!(ClosedMesh::new(points, Vec::new()).is_err());
+        let open = ClosedMesh::new(points.clone(), triangles[1..].to_vec());
+        assert_eq!(open, Err(ClosedMeshError::Open { open: 3, edges: 18 }));
+        assert_eq!(ClosedMesh::new(points, Vec::new()), Err(ClosedMeshError::Empty));
     }
 }

@@ -27,10 +27,10 @@ const POSITIVE: [[i32; 3]; 13] = [
 ];
 
 impl Neighbours {
-    /// All eight around a node of the plane.
+    /// The 8-neighbourhood of the plane.
     pub const EIGHT: Self = Self(8);
 
-    /// The neighbourhood of `count`, or `None` if there is none.
+    /// The neighbourhood with `count` neighbours, or `None` if there is none.
     #[must_use]
     pub const fn new(count: u32) -> Option<Self> {
         match count {
@@ -39,7 +39,7 @@ impl Neighbours {
         }
     }
 
-    /// Neighbours of a node that is not at the border.
+    /// The number of neighbours of an interior node.
     #[must_use]
     pub const fn count(self) -> u32 {
         self.0
@@ -54,7 +54,7 @@ impl Neighbours {
     /// The step of each of the `N` slots: opposite steps in pairs, the positive one first.
     ///
     /// # Panics
-    /// When `N` is not a neighbourhood; in a constant, that is an error of compilation.
+    /// When `N` is not a neighbourhood; in a constant, that is a compile-time error.
     #[must_use]
     pub const fn steps<const N: usize>() -> [[i32; 3]; N] {
         let mut steps = [[0; 3]; N];
@@ -82,11 +82,16 @@ impl Neighbours {
     }
 }
 
-impl TryFrom<u32> for Neighbours {
-    type Error = String;
+/// A number of neighbours that no lattice has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0} is not one of 4, 8 (2D), 6, 18, 26 (3D)")]
+pub struct NeighboursError(pub u32);
 
-    fn try_from(count: u32) -> Result<Self, String> {
-        Self::new(count).ok_or_else(|| format!("{count} is not one of 4, 8 (2D), 6, 18, 26 (3D)"))
+impl TryFrom<u32> for Neighbours {
+    type Error = NeighboursError;
+
+    fn try_from(count: u32) -> Result<Self, NeighboursError> {
+        Self::new(count).ok_or(NeighboursError(count))
     }
 }
 

@@ -1,23 +1,24 @@
-//! Voxels that something is in, kept where there are any: a space of a billion costs what it holds.
+//! A sparse set of voxels, a tree of two levels as in VDB (Museth 2013): a space of a billion voxels takes the memory of those
+//! that are occupied.
 
 use rayon::prelude::*;
 
 use super::{Bounds, Shape};
 use crate::math::DVec3;
 
-/// Voxels along the side of a block, and blocks along that of a tile, as a power of 2.
+/// log2 of the voxels along the side of a leaf, and of the leaves along the side of a tile.
 const BITS: u32 = 3;
-/// Voxels of a block, and blocks of a tile.
+/// Voxels of a leaf, and leaves of a tile.
 const CELLS: usize = 1 << (3 * BITS);
-/// How many voxels deep a solid is filled: rays that start beside it cannot step over that.
-const DEEP: f64 = 3.0;
-/// Rays go on by this share of a voxel past each border.
+/// Depth to which a solid is filled, in voxels: more than a ray that starts beside it can step over.
+const DEPTH: f64 = 3.0;
+/// Advance of a ray past each cell's border, in voxels.
 const STEP: f64 = 1e-6;
-/// Parts of a direction that are less than this count as none.
+/// Smaller components of a direction count as 0.
 const LEAST: f64 = 1e-12;
 
-/// A block of 8 x 8 x 8 voxels, a bit each.
-type Block = [u64; CELLS / 64];
+/// 8 x 8 x 8 voxels, a bit each.
+type LeafBits = [u64; CELLS / 64];
 
 /// A set of voxels: cubes of one size in a box.
 #[derive(Clone, Debug)]
@@ -26,19 +27,20 @@ pub struct Occupancy {
     side: f64,
     /// Voxels along each axis.
     size: [i32; 3],
-    /// Tiles along each axis, and for each tile its place in `tiles`, or none.
-    across: [i32; 3],
-    tops: Vec<u32>,
-    /// For each tile the place of its blocks in `blocks`, or none.
+    /// Tiles along each axis.
+    tiling: [i32; 3],
+    /// The index of each tile in `tiles`, or [`NONE`].
+    root: Vec<u32>,
+    /// For each tile the indices of its leaves in `leaves`, or [`NONE`].
     tiles: Vec<[u32; CELLS]>,
-    blocks: Vec<Block>,
+    leaves: Vec<LeafBits>,
     count: u64,
 }
 
-/// No tile, no block.
+/// Stands for an empty tile or leaf.
 const NONE: u32 = u32::MAX;
 
-/// The place of a cell within its block, or of a block within its tile.
+/// The index of a voxel within its leaf, or of a leaf within its tile.
 fn within([x, y, z]: [i32; 3]) -> usize {
     let low = |c: i32| (c & ((1 << BITS) - 1)) as usize;
     low(x) | low(y) << BITS | low(z) << (2 * BITS)
@@ -49,36 +51,36 @@ impl Occupancy {
     #[must_use]
     pub fn new(bounds: Bounds, side: f64) -> Self {
         let size = Self::size(bounds, side).map(|n| n as i32);
-        let across = size.map(|n| ((n - 1) >> (2 * BITS)) + 1);
-        let tops = vec![NONE; across.iter().map(|&n| n as usize).product()];
-        Self { low: bounds.min, side, size, across, tops, tiles: Vec::new(), blocks: Vec::new(), count: 0 }
+        let tiling = size.map(|n| ((n - 1) >> (2 * BITS)) + 1);
+        let root = vec![NONE; tiling.iter().map(|&n| n as usize).product()];
+        Self { low: bounds.min, side, size, tiling, root, tiles: Vec::new(), leaves: Vec::new(), count: 0 }
     }
 
-    /// How many voxels with this side there are along each axis of `bounds`.
+    /// The number of voxels with this side along each axis of `bounds`.
     #[must_use]
     pub fn size(bounds: Bounds, side: f64) -> [f64; 3] {
         (bounds.size() / side).to_array().map(|n| libm::ceil(n - 1e-9).max(1.0))
     }
 
-    /// Bytes that it takes.
+    /// Bytes in memory.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        self.tops.len() * 4 + self.tiles.len() * CELLS * 4 + self.blocks.len() * size_of::<Block>()
+        self.root.len() * 4 + self.tiles.len() * CELLS * 4 + self.leaves.len() * size_of::<LeafBits>()
     }
 
-    /// Side of a voxel.
+    /// Side of a voxel, in scene units.
     #[must_use]
     pub fn side(&self) -> f64 {
         self.side
     }
 
-    /// How many voxels something is in.
+    /// The number of occupied voxels.
     #[must_use]
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// The voxel at `p`.
+    /// The coordinates of the voxel that contains `p`.
     fn cell(&self, p: DVec3) -> [i32; 3] {
         ((p - self.low) / self.side).to_array().map(|c| libm::floor(c) as i32)
     }
@@ -88,60 +90,61 @@ impl Occupancy {
         x >= 0 && x < nx && y >= 0 && y < ny && z >= 0 && z < nz
     }
 
-    fn top(&self, [x, y, z]: [i32; 3]) -> usize {
+    /// The index in `root` of the tile that contains the voxel.
+    fn tile(&self, [x, y, z]: [i32; 3]) -> usize {
         let tile = |c: i32| c >> (2 * BITS);
-        (tile(x) + self.across[0] * (tile(y) + self.across[1] * tile(z))) as usize
+        (tile(x) + self.tiling[0] * (tile(y) + self.tiling[1] * tile(z))) as usize
     }
 
-    /// Of the voxel `at`, which must be within: 2^n is the side of the largest empty cell of the tree around it, as n; none
-    /// where something is in it.
-    fn free(&self, at: [i32; 3]) -> Option<u32> {
-        let tile = self.tops[self.top(at)];
+    /// log2 of the side, in voxels, of the largest empty cell of the tree around the voxel `at`, which must be within the box;
+    /// `None` if it is occupied.
+    fn empty_level(&self, at: [i32; 3]) -> Option<u32> {
+        let tile = self.root[self.tile(at)];
         if tile == NONE {
             return Some(2 * BITS);
         }
         let [x, y, z] = at;
-        let block = self.tiles[tile as usize][within([x >> BITS, y >> BITS, z >> BITS])];
-        if block == NONE {
+        let leaf = self.tiles[tile as usize][within([x >> BITS, y >> BITS, z >> BITS])];
+        if leaf == NONE {
             return Some(BITS);
         }
         let bit = within(at);
-        (self.blocks[block as usize][bit / 64] >> (bit % 64) & 1 == 0).then_some(0)
+        (self.leaves[leaf as usize][bit / 64] >> (bit % 64) & 1 == 0).then_some(0)
     }
 
-    /// Is something in the voxel at `p`?
+    /// Is the voxel that contains `p` occupied?
     #[must_use]
     pub fn contains(&self, p: DVec3) -> bool {
         let at = self.cell(p);
-        self.is_within(at) && self.free(at).is_none()
+        self.is_within(at) && self.empty_level(at).is_none()
     }
 
-    /// The block of the voxel `at`, which must be within.
-    fn block(&mut self, at: [i32; 3]) -> &mut Block {
-        let top = self.top(at);
-        if self.tops[top] == NONE {
-            self.tops[top] = self.tiles.len() as u32;
+    /// The leaf of the voxel `at`, which must be within the box; added if it is missing.
+    fn leaf(&mut self, at: [i32; 3]) -> &mut LeafBits {
+        let tile = self.tile(at);
+        if self.root[tile] == NONE {
+            self.root[tile] = self.tiles.len() as u32;
             self.tiles.push([NONE; CELLS]);
         }
-        let slot = &mut self.tiles[self.tops[top] as usize][within(at.map(|c| c >> BITS))];
+        let slot = &mut self.tiles[self.root[tile] as usize][within(at.map(|c| c >> BITS))];
         if *slot == NONE {
-            *slot = self.blocks.len() as u32;
-            self.blocks.push(Block::default());
+            *slot = self.leaves.len() as u32;
+            self.leaves.push(LeafBits::default());
         }
-        &mut self.blocks[*slot as usize]
+        &mut self.leaves[*slot as usize]
     }
 
     fn insert(&mut self, at: [i32; 3]) {
         if self.is_within(at) {
             let bit = within(at);
-            let word = &mut self.block(at)[bit / 64];
+            let word = &mut self.leaf(at)[bit / 64];
             let is_new = *word >> (bit % 64) & 1 == 0;
             *word |= 1 << (bit % 64);
             self.count += u64::from(is_new);
         }
     }
 
-    /// Takes up the voxels along a line.
+    /// Occupies the voxels along a line segment.
     pub fn insert_line(&mut self, from: DVec3, to: DVec3) {
         let steps = libm::ceil((to - from).length() / self.side * 2.0).max(1.0) as u32;
         for i in 0..=steps {
@@ -149,13 +152,13 @@ impl Occupancy {
         }
     }
 
-    /// Takes up the voxels whose middles lie in a ball.
+    /// Occupies the voxels whose centres lie in a ball.
     pub fn insert_ball(&mut self, centre: DVec3, radius: f64) {
         let (low, high) = (self.cell(centre - radius), self.cell(centre + radius));
         for z in low[2]..=high[2] {
             for y in low[1]..=high[1] {
                 for x in low[0]..=high[0] {
-                    if (self.middle([x, y, z], 0) - centre).length_squared() <= radius * radius {
+                    if (self.centre([x, y, z], 0) - centre).length_squared() <= radius * radius {
                         self.insert([x, y, z]);
                     }
                 }
@@ -163,62 +166,23 @@ impl Occupancy {
         }
     }
 
-    /// The middle of the cell of the tree whose side is 2^`level` voxels, from its first voxel.
-    fn middle(&self, at: [i32; 3], level: u32) -> DVec3 {
+    /// The centre of the cell with side 2^`level` voxels whose first voxel is `at`.
+    fn centre(&self, at: [i32; 3], level: u32) -> DVec3 {
         let half = f64::from(1 << level) * 0.5;
         self.low + DVec3::from_array(at.map(|c| f64::from(c) + half)) * self.side
     }
 
-    /// Takes up the voxels whose middles lie in `shape`, no deeper below its surface than a few voxels.
+    /// Occupies the voxels whose centres lie in `shape`, to a depth of a few voxels below its surface.
     pub fn insert_shape(&mut self, shape: &Shape) {
-        let deep = DEEP * self.side;
-        // Every voxel is asked for once: samples would be kept for nothing.
+        // Every voxel is evaluated once: a cache would be useless.
         let shape = &shape.unsampled();
-        // Half the diagonal of a cell of the tree.
-        let reach = |level: u32| f64::from(1 << level) * self.side * 0.5 * libm::sqrt(3.0);
-        let is_near = |at: [i32; 3], level: u32| {
-            let margin = shape.margin(self.middle(at, level));
-            margin <= reach(level) && margin >= -reach(level) - deep
-        };
-        let filled = |tile: [i32; 3]| -> Vec<([i32; 3], Block)> {
-            let first = tile.map(|c| c << (2 * BITS));
-            if !is_near(first, 2 * BITS) {
-                return Vec::new();
-            }
-            let mut found = Vec::new();
-            let mut near_pairs = [false; CELLS];
-            for block in 0..CELLS as i32 {
-                let at = each(block, first, BITS);
-                if !is_near(at, BITS) {
-                    continue;
-                }
-                let mut bits = Block::default();
-                for voxel in 0..CELLS as i32 {
-                    let cell = each(voxel, at, 0);
-                    // Most of a block is not near: its pairs of voxels tell.
-                    let pair = cell.map(|c| c & !1);
-                    if cell == pair {
-                        near_pairs[voxel as usize] = is_near(pair, 1);
-                    }
-                    if !near_pairs[within(pair)] {
-                        continue;
-                    }
-                    let d = shape.distance(self.middle(cell, 0));
-                    let is_set = d <= 0.0 && d >= -deep && self.is_within(cell);
-                    bits[voxel as usize / 64] |= u64::from(is_set) << (voxel % 64);
-                }
-                if bits != Block::default() {
-                    found.push((at, bits));
-                }
-            }
-            found
-        };
-        let [nx, ny, nz] = self.across;
+        let [nx, ny, nz] = self.tiling;
         let tiles: Vec<[i32; 3]> = (0..nx * ny * nz).map(|i| [i % nx, i / nx % ny, i / (nx * ny)]).collect();
-        let found: Vec<Vec<([i32; 3], Block)>> = tiles.into_par_iter().map(filled).collect();
+        let found: Vec<Vec<([i32; 3], LeafBits)>> =
+            tiles.into_par_iter().map(|tile| self.leaves_of(shape, tile)).collect();
         for (at, bits) in found.into_iter().flatten() {
             let mut more = 0;
-            for (word, more_bits) in self.block(at).iter_mut().zip(bits) {
+            for (word, more_bits) in self.leaf(at).iter_mut().zip(bits) {
                 more += u64::from((more_bits & !*word).count_ones());
                 *word |= more_bits;
             }
@@ -226,15 +190,58 @@ impl Occupancy {
         }
     }
 
-    /// Is something on the way from `origin` along `way`, of length 1, farther than `near`?
+    /// The leaves of a tile that a shape occupies near its surface, by their first voxel.
+    fn leaves_of(&self, shape: &Shape, tile: [i32; 3]) -> Vec<([i32; 3], LeafBits)> {
+        let depth = DEPTH * self.side;
+        let half_diagonal = |level: u32| f64::from(1 << level) * self.side * 0.5 * libm::sqrt(3.0);
+        // May the cell contain voxels to be occupied?
+        let is_near = |at: [i32; 3], level: u32| {
+            let margin = shape.margin(self.centre(at, level));
+            margin <= half_diagonal(level) && margin >= -half_diagonal(level) - depth
+        };
+        let first = tile.map(|c| c << (2 * BITS));
+        if !is_near(first, 2 * BITS) {
+            return Vec::new();
+        }
+        let mut found = Vec::new();
+        let mut near_pairs = [false; CELLS];
+        for leaf in 0..CELLS as i32 {
+            let at = first_voxel(leaf, first, BITS);
+            if !is_near(at, BITS) {
+                continue;
+            }
+            let mut bits = LeafBits::default();
+            for voxel in 0..CELLS as i32 {
+                let cell = first_voxel(voxel, at, 0);
+                // Most of a leaf is not near: cells of 2 x 2 x 2 voxels are tested first.
+                let pair = cell.map(|c| c & !1);
+                if cell == pair {
+                    near_pairs[voxel as usize] = is_near(pair, 1);
+                }
+                if !near_pairs[within(pair)] {
+                    continue;
+                }
+                let d = shape.distance(self.centre(cell, 0));
+                let is_set = d <= 0.0 && d >= -depth && self.is_within(cell);
+                bits[voxel as usize / 64] |= u64::from(is_set) << (voxel % 64);
+            }
+            if bits != LeafBits::default() {
+                found.push((at, bits));
+            }
+        }
+        found
+    }
+
+    /// Does the ray from `origin` along the unit vector `direction` meet an occupied voxel beyond the distance `near`?
     #[must_use]
-    pub fn is_blocked(&self, origin: DVec3, way: DVec3, near: f64) -> bool {
+    pub fn is_blocked(&self, origin: DVec3, direction: DVec3, near: f64) -> bool {
         let from = (origin - self.low) / self.side;
-        // What is less crosses no border, and would be stopped at each.
-        let way = way.map(|c| if c.abs() < LEAST { 0.0 } else { c });
-        let inverse = DVec3::new(inverse(way.x), inverse(way.y), inverse(way.z));
-        // Upwards along an axis the way leaves a cell at its far side.
-        let far = DVec3::new(side(way.x), side(way.y), side(way.z));
+        // A smaller component crosses no border, but rounding would stop the ray at each.
+        let direction = direction.map(|c| if c.abs() < LEAST { 0.0 } else { c });
+        let inverse = DVec3::new(inverse(direction.x), inverse(direction.y), inverse(direction.z));
+        // A ray upwards along an axis leaves a cell at its upper side.
+        let far = DVec3::new(exit_side(direction.x), exit_side(direction.y), exit_side(direction.z));
+        // The parameter at which the ray leaves a cell.
         let out_of = |low: DVec3, size: DVec3| {
             let out = (low + far * size - from) * inverse;
             let xy = if out.x < out.y { out.x } else { out.y };
@@ -244,14 +251,14 @@ impl Occupancy {
             out_of(DVec3::ZERO, DVec3::new(f64::from(self.size[0]), f64::from(self.size[1]), f64::from(self.size[2])));
         let mut t = near / self.side;
         while t < end {
-            let p = from + way * t;
-            // Towards zero: only what starts outside has negative places, and those are none of the space's.
+            let p = from + direction * t;
+            // Truncation is floor here: negative coordinates are outside.
             let at = [p.x as i32, p.y as i32, p.z as i32];
             if p.x < 0.0 || p.y < 0.0 || p.z < 0.0 || !self.is_within(at) {
                 t += 1.0;
                 continue;
             }
-            let Some(level) = self.free(at) else { return true };
+            let Some(level) = self.empty_level(at) else { return true };
             let low = |c: i32| f64::from(c >> level << level);
             let out = out_of(DVec3::new(low(at[0]), low(at[1]), low(at[2])), DVec3::splat(f64::from(1 << level)));
             t = if out > t { out } else { t } + STEP;
@@ -260,20 +267,20 @@ impl Occupancy {
     }
 }
 
-/// One over a part of a direction; where that is 0 no border is ever met.
-fn inverse(way: f64) -> f64 {
-    if way == 0.0 { f64::INFINITY } else { 1.0 / way }
+/// The reciprocal of a component of a direction; infinite where it is 0, since no border is met.
+fn inverse(component: f64) -> f64 {
+    if component == 0.0 { f64::INFINITY } else { 1.0 / component }
 }
 
-/// Which side of a cell a direction leaves by: 1 the far one, 0 the near one.
-fn side(way: f64) -> f64 {
-    if way >= 0.0 { 1.0 } else { 0.0 }
+/// The side by which a ray with this component leaves a cell: 1 the upper one, 0 the lower one.
+fn exit_side(component: f64) -> f64 {
+    if component >= 0.0 { 1.0 } else { 0.0 }
 }
 
-/// The first voxel of the cell with this place in a cell of the tree that starts at `first`; its own cells have 2^`level` voxels.
-fn each(place: i32, first: [i32; 3], level: u32) -> [i32; 3] {
+/// The first voxel of child `index` of the cell whose first voxel is `first`; children have 2^`level` voxels a side.
+fn first_voxel(index: i32, first: [i32; 3], level: u32) -> [i32; 3] {
     let mask = (1 << BITS) - 1;
-    [0, 1, 2].map(|axis| first[axis as usize] + ((place >> (BITS as i32 * axis) & mask) << level))
+    [0, 1, 2].map(|axis| first[axis as usize] + ((index >> (BITS as i32 * axis) & mask) << level))
 }
 
 #[cfg(test)]
@@ -326,7 +333,7 @@ mod tests {
         assert_eq!(voxels.count(), count);
     }
 
-    /// Along a border, but for what rounding leaves, a ray goes on from cell to cell.
+    /// A ray along a border, but for rounding, advances from cell to cell.
     #[test]
     fn rays_along_borders_go_on() {
         let bounds = Bounds { min: DVec3::ZERO, max: DVec3::new(4096.0, 4.0, 4.0) };
@@ -337,7 +344,7 @@ mod tests {
         assert!(voxels.is_blocked(DVec3::new(0.5, 2.0, 2.0), way, 0.0));
     }
 
-    /// A space of a billion voxels takes what is in it.
+    /// A space of a billion voxels takes the memory of the occupied ones.
     #[test]
     fn empty_space_is_free() {
         let bounds = Bounds { min: DVec3::ZERO, max: DVec3::splat(1024.0) };

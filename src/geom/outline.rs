@@ -1,44 +1,52 @@
 //! Outlines of the plane: letters and painted masks.
 
-use super::shape::segment_distance;
-use super::{Bounds, Strokes};
+use super::{Bounds, Strokes, segment_distance};
 use crate::math::{DVec2, DVec3};
 
-/// What closed outlines enclose.
+/// Why outlines bound no region.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum OutlineError {
+    /// There is no ring, or it has no area.
+    #[error("it encloses nothing")]
+    Empty,
+}
+
+/// The region that closed polylines enclose, by the non-zero winding rule.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
     strokes: Strokes,
     bounds: Bounds,
-    /// Edges by the row of heights that they cross.
+    /// The edges that cross each horizontal band.
     rows: Vec<Vec<[DVec2; 2]>>,
+    /// Height of a band.
     row: f64,
 }
 
-/// Rows for each outline's edge, about: each is crossed by few.
+/// Edges for each band, on average.
 const EDGES_PER_ROW: usize = 2;
-/// Most rows.
+/// Most bands.
 const MOST_ROWS: usize = 4096;
 
 impl Outline {
-    /// What `rings`, closed polylines whose last point need not repeat the first, wind around (not by turns that cancel each
-    /// other: a hole runs the other way).
+    /// The points about which the winding number of `rings` is not 0: a hole runs in the opposite direction. The last point
+    /// of a ring need not repeat the first.
     ///
     /// # Errors
-    /// A sentence where they enclose nothing.
-    pub fn new(rings: &[Vec<DVec2>]) -> Result<Self, String> {
+    /// [`OutlineError`].
+    pub fn new(rings: &[Vec<DVec2>]) -> Result<Self, OutlineError> {
         let mut bounds = Bounds::EMPTY;
         let mut edges = Vec::new();
         let mut lines = Vec::new();
         for ring in rings.iter().filter(|ring| ring.len() > 2) {
             let mut line: Vec<DVec3> = ring.iter().map(|p| p.extend(0.0)).collect();
             line.push(line[0]);
-            bounds = line.iter().fold(bounds, |b, &p| b.union(Bounds { min: p, max: p }));
+            bounds = line.iter().copied().fold(bounds, Bounds::with_point);
             edges.extend(line.windows(2).map(|w| [w[0].truncate(), w[1].truncate()]));
             lines.push(line);
         }
         let size = bounds.size();
         if edges.is_empty() || size.x <= 0.0 || size.y <= 0.0 || !size.is_finite() {
-            return Err("it encloses nothing".to_owned());
+            return Err(OutlineError::Empty);
         }
         let count = (edges.len() / EDGES_PER_ROW).clamp(1, MOST_ROWS);
         let row = size.y / count as f64;
@@ -51,7 +59,7 @@ impl Outline {
         Ok(Self { strokes: Strokes::new(lines), bounds, rows, row })
     }
 
-    /// A box around it, flat.
+    /// Its bounding box, flat along z.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         self.bounds
@@ -64,7 +72,7 @@ impl Outline {
         if row < 0.0 || p.y > self.bounds.max.y {
             return false;
         }
-        // How often the edges to the right wind around it.
+        // Contribution of an edge to the right of `p` to the winding number.
         let wind = |[a, b]: &[DVec2; 2]| {
             if (a.y <= p.y) == (b.y <= p.y) {
                 return 0;
@@ -75,7 +83,7 @@ impl Outline {
         self.rows[(row as usize).min(self.rows.len() - 1)].iter().map(wind).sum::<i32>() != 0
     }
 
-    /// Signed distance from the outline, negative inside.
+    /// Signed distance of `p`, negative inside.
     #[must_use]
     pub fn distance(&self, p: DVec2) -> f64 {
         let distance = self.strokes.distance(p.extend(0.0));
@@ -83,18 +91,18 @@ impl Outline {
     }
 }
 
-/// Fewer points along a polyline: those within `slack` of what is left go (Ramer 1972; Douglas and Peucker 1973).
+/// A polyline simplified to within `tolerance` (Ramer 1972; Douglas and Peucker 1973).
 #[must_use]
-pub fn simplified(line: &[DVec2], slack: f64) -> Vec<DVec2> {
+pub fn simplified(line: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     let mut keep = vec![false; line.len()];
     let mut parts = vec![(0, line.len().saturating_sub(1))];
     for &i in [0, line.len().saturating_sub(1)].iter().filter(|_| !line.is_empty()) {
         keep[i] = true;
     }
     while let Some((from, to)) = parts.pop() {
-        let off = |i: usize| segment_distance(line[i].extend(0.0), line[from].extend(0.0), line[to].extend(0.0));
-        let farthest = (from + 1..to).max_by(|&a, &b| off(a).total_cmp(&off(b)));
-        if let Some(farthest) = farthest.filter(|&i| off(i) > slack) {
+        let error = |i: usize| segment_distance(line[i].extend(0.0), line[from].extend(0.0), line[to].extend(0.0));
+        let farthest = (from + 1..to).max_by(|&a, &b| error(a).total_cmp(&error(b)));
+        if let Some(farthest) = farthest.filter(|&i| error(i) > tolerance) {
             keep[farthest] = true;
             parts.extend([(from, farthest), (farthest, to)]);
         }

@@ -1,8 +1,8 @@
-//! A limb segment: two spheres and the frustum tangent to both.
+//! Round cones, the limb segments: two spheres and the frustum tangent to both.
 
 use crate::math::DVec3;
 
-/// A cone frustum without caps.
+/// A conical frustum without caps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frustum {
     /// Centre of one end.
@@ -15,9 +15,9 @@ pub struct Frustum {
     pub rb: f64,
 }
 
-/// The frustum tangent to the spheres `(a, ra)` and `(b, rb)`, or `None` where one sphere holds the other.
+/// The frustum tangent to the spheres `(a, ra)` and `(b, rb)`, or `None` where one sphere contains the other.
 ///
-/// With L the distance of the centres, u the direction from a to b and sin t = (ra - rb) / L, it goes from
+/// With L the distance of the centres, u the direction from a to b and sin t = (ra - rb) / L, it extends from
 /// `a + u ra sin t` with radius `ra cos t` to `b + u rb sin t` with radius `rb cos t`.
 #[must_use]
 pub fn frustum(a: DVec3, ra: f64, b: DVec3, rb: f64) -> Option<Frustum> {

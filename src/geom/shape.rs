@@ -1,14 +1,14 @@
-//! Shapes: regions of the plane or of space, made of a few solids.
+//! Shapes: regions of the plane or of space as signed distance functions.
 
 use std::sync::Arc;
 
-use super::{Bounds, ClosedMesh, Outline, Profile, Sampled, Voxels};
+use super::{Bounds, ClosedMesh, Outline, Profile, Sampled, SignedDistance, Voxels, segment_distance};
 use crate::math::{DMat3, DVec2, DVec3};
 
-/// A solid, or several combined, whose names and files are resolved.
+/// A solid or a combination of shapes, with names and files resolved.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Solid {
-    /// All between two corners.
+    /// An axis-aligned box.
     Box {
         /// The corner with the lowest coordinates.
         min: DVec3,
@@ -17,113 +17,119 @@ pub enum Solid {
     },
     /// A ball; in the plane, a disc.
     Sphere {
-        /// Its middle.
+        /// Its centre.
         centre: DVec3,
         /// Its radius.
         radius: f64,
     },
-    /// An ellipsoid along the axes.
+    /// An axis-aligned ellipsoid.
     Ellipsoid {
-        /// Its middle.
+        /// Its centre.
         centre: DVec3,
         /// Its half-axes.
         radii: DVec3,
     },
     /// A cylinder with flat ends.
     Cylinder {
-        /// Middle of one end.
+        /// Centre of one end.
         from: DVec3,
-        /// Middle of the other end.
+        /// Centre of the other end.
         to: DVec3,
         /// Its radius.
         radius: f64,
     },
-    /// A cylinder with round ends.
+    /// A cylinder with hemispherical ends.
     Capsule {
-        /// Middle of one end's ball.
+        /// Centre of one hemisphere.
         from: DVec3,
-        /// Middle of the other end's ball.
+        /// Centre of the other hemisphere.
         to: DVec3,
         /// Its radius.
         radius: f64,
     },
-    /// All of a ball that lies within an angle of a direction.
+    /// A spherical sector: the part of a ball within an angle of a direction.
     Sector {
-        /// The ball's middle.
+        /// The ball's centre.
         at: DVec3,
-        /// The direction, of length 1.
+        /// The direction, a unit vector.
         along: DVec3,
         /// The angle, in radians, below pi.
         angle: f64,
-        /// Its sine and cosine.
+        /// Sine and cosine of the angle.
         side: DVec2,
         /// The ball's radius.
         radius: f64,
     },
-    /// An outline turned around an axis.
+    /// A solid of revolution.
     Revolved {
-        /// Where height 0 is on the axis.
+        /// The point of the axis at height 0.
         from: DVec3,
-        /// The axis' direction, of length 1.
+        /// The axis' direction, a unit vector.
         along: DVec3,
-        /// The outline.
+        /// The profile.
         profile: Arc<Profile>,
     },
     /// The inside of a mesh.
     Mesh(Arc<ClosedMesh>),
-    /// What outlines enclose: in the plane, or upright in space as far as half of `depth` to the front and to the back.
+    /// The region of outlines: in the plane, or upright in space and extruded along y.
     Outlined {
         /// The outlines.
         outline: Arc<Outline>,
-        /// Extent along y; in the plane none.
+        /// Extent along y, centred at 0; `None` in the plane.
         depth: Option<f64>,
     },
-    /// All that is no farther from the surface of a shape than this.
+    /// The points near the surface of a shape.
     Shell {
         /// The shape.
         of: Shape,
-        /// How far it reaches outside.
+        /// Thickness outside the surface.
         outside: f64,
-        /// How far it reaches inside.
+        /// Thickness inside the surface.
         inside: f64,
     },
-    /// What the step with this index will have grown, within these bounds: until then nothing ([`Shape::with_grown`]).
+    /// Placeholder of what the step with this index grows within these bounds; empty until [`Shape::with_grown`].
     Grown(usize, Bounds),
-    /// A solid that grew.
+    /// A grown solid.
     Voxels(Arc<Voxels>),
-    /// A shape of which samples are kept ([`Shape::sampled`]).
-    Sampled(Arc<Sampled>),
-    /// A shape that is scaled, then turned, then moved.
+    /// A shape with cached samples ([`Shape::sampled`]).
+    Sampled(Arc<Sampled<Shape>>),
+    /// A shape scaled, then rotated, then translated.
     Placed {
         /// The shape.
         shape: Shape,
-        /// Its size over what it was.
+        /// Scale factor.
         scale: f64,
-        /// A rotation.
+        /// Rotation.
         turn: DMat3,
-        /// How far it is moved.
+        /// Translation.
         by: DVec3,
     },
-    /// All that is in at least one of these.
+    /// The union of shapes.
     Union(Vec<Shape>),
-    /// All that is in every one of these.
+    /// The intersection of shapes.
     Intersection(Vec<Shape>),
-    /// All that is in the first and in no other.
+    /// The first shape less all others.
     Difference(Vec<Shape>),
 }
 
-/// A shape whose names are resolved.
+/// A shape with names and files resolved; clones share it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape(Arc<Solid>);
 
+impl SignedDistance for Shape {
+    fn distance(&self, p: DVec3) -> f64 {
+        Self::distance(self, p)
+    }
+}
+
 impl Shape {
-    /// The shape that is this solid. Lengths are above 0, directions of length 1.
+    /// A shape of one solid, whose lengths are above 0 and whose directions are unit vectors.
     #[must_use]
     pub fn new(solid: Solid) -> Self {
         Self(Arc::new(solid))
     }
 
-    /// A cone with flat ends of these radii; `None` where it has no length or width.
+    /// A cone with flat ends of these radii; `None` where its length or both radii are 0.
     #[must_use]
     pub fn cone(from: DVec3, to: DVec3, [a, b]: [f64; 2]) -> Option<Self> {
         let along = (to - from).try_normalize()?;
@@ -132,11 +138,11 @@ impl Shape {
         Some(Self::new(Solid::Revolved { from, along, profile }))
     }
 
-    /// The shape scaled about the origin, turned by a rotation, and moved.
+    /// The shape scaled about the origin, rotated by `turn` and translated by `by`.
     #[must_use]
     pub fn placed(&self, scale: f64, turn: DMat3, by: DVec3) -> Self {
         let point = |p: DVec3| turn * (p * scale) + by;
-        // Solids that stay what they are keep tight boxes.
+        // Solids that stay of their kind keep tight bounding boxes.
         Self::new(match &*self.0 {
             Solid::Sphere { centre, radius } => Solid::Sphere { centre: point(*centre), radius: radius * scale },
             Solid::Sector { at, along, angle, side, radius } => {
@@ -159,34 +165,37 @@ impl Shape {
         self.distance(p) <= 0.0
     }
 
-    /// Signed distance from the surface, negative inside. Exact for single solids except the ellipsoid, whose distance
-    /// is of first order; for combinations a lower bound.
+    /// Signed distance of `p` from the surface, negative inside. Exact for single solids, of first order for the ellipsoid,
+    /// a lower bound for combinations.
     #[must_use]
     pub fn distance(&self, p: DVec3) -> f64 {
         self.signed(p, &|centre, radii, p| {
+            // Quilez, "ellipsoid SDF": the implicit function over its gradient's length.
             let p = p - centre;
             let (k0, k1) = ((p / radii).length(), (p / (radii * radii)).length());
             if k1 == 0.0 { -radii.min_element() } else { k0 * (k0 - 1.0) / k1 }
         })
     }
 
-    /// A number with the sign of [`Shape::distance`] that is nowhere larger than the true distance from the surface.
+    /// A conservative distance bound: it has the sign of [`Shape::distance`], and its magnitude never exceeds the true
+    /// distance from the surface.
     #[must_use]
     pub fn margin(&self, p: DVec3) -> f64 {
         if self.is_sampled() {
-            // Distances that are not exact, of grids and of shells, are off by less than that.
+            // Distances of grids and shells are off by less than half.
             return self.distance(p) * 0.5;
         }
-        // |p / radii| changes by no more than 1 / (the least radius) a unit.
+        // |p / radii| has the Lipschitz constant 1 / (the least radius).
         self.signed(p, &|centre, radii, p| (((p - centre) / radii).length() - 1.0) * radii.min_element())
     }
 
+    /// The signed distance function with `ellipsoid`'s for ellipsoids, called with centre, half-axes and point.
     fn signed(&self, p: DVec3, ellipsoid: &dyn Fn(DVec3, DVec3, DVec3) -> f64) -> f64 {
         match &*self.0 {
             Solid::Box { min, max } => {
                 let half = (*max - *min) * 0.5;
                 let q = (p - (*min + *max) * 0.5).abs() - half;
-                // A flat box has an inside in its own plane.
+                // A flat box has an interior in its own plane.
                 let inner = if half.z == 0.0 && q.z <= 0.0 { q.x.max(q.y) } else { q.max_element() };
                 q.max(DVec3::ZERO).length() + inner.min(0.0)
             }
@@ -205,7 +214,7 @@ impl Shape {
             Solid::Sector { at, along, side, radius, .. } => {
                 let q = beside(p - *at, *along);
                 let side = *side;
-                // From the flank, a straight line in this half-plane; negative within the angle.
+                // Signed distance from the conical side, a segment in the half-plane of the axis; negative within the angle.
                 let foot = side * q.dot(side).clamp(0.0, *radius);
                 let flank = (q - foot).length();
                 let flank = if q.x * side.y > q.y * side.x { flank } else { -flank };
@@ -238,7 +247,7 @@ impl Shape {
         }
     }
 
-    /// This shape with every [`Solid::Grown`] in it replaced by what `grown` has for it.
+    /// The shape with every [`Solid::Grown`] replaced by the voxels that `grown` has for its step.
     #[must_use]
     pub fn with_grown(&self, grown: &dyn Fn(usize) -> Option<Arc<Voxels>>) -> Self {
         let all = |of: &[Self]| of.iter().map(|shape| shape.with_grown(grown)).collect();
@@ -258,7 +267,7 @@ impl Shape {
         }
     }
 
-    /// This shape with samples of its meshes, whose distances are dear, on a grid with this spacing.
+    /// The shape with cached samples on a grid with this spacing if it contains meshes, whose distances are costly.
     #[must_use]
     pub fn sampled(&self, spacing: f64) -> Self {
         if self.has_mesh() {
@@ -268,7 +277,7 @@ impl Shape {
         }
     }
 
-    /// This shape without samples, as it was before [`Shape::sampled`].
+    /// The inverse of [`Shape::sampled`].
     #[must_use]
     pub fn unsampled(&self) -> Self {
         if let Solid::Sampled(sampled) = &*self.0 { sampled.shape().clone() } else { self.clone() }
@@ -283,7 +292,7 @@ impl Shape {
         }
     }
 
-    /// Is anything in it that outlines enclose, with a depth or without one?
+    /// Does it contain an outline, extruded (`is_deep`) or flat?
     #[must_use]
     pub fn has_outline(&self, is_deep: bool) -> bool {
         match &*self.0 {
@@ -296,7 +305,7 @@ impl Shape {
         }
     }
 
-    /// Is anything in it of which distances are approximate on both sides of its surface?
+    /// Does it contain a solid whose distances are approximate on both sides of its surface?
     fn is_sampled(&self) -> bool {
         match &*self.0 {
             Solid::Voxels(_) | Solid::Sampled(_) | Solid::Shell { .. } => true,
@@ -306,7 +315,7 @@ impl Shape {
         }
     }
 
-    /// How far `p` lies below the outer surface: for a sector below its round part.
+    /// Depth of `p` below the outer surface: for a sector, below its spherical part.
     #[must_use]
     pub fn depth(&self, p: DVec3) -> f64 {
         match &*self.0 {
@@ -316,7 +325,7 @@ impl Shape {
         }
     }
 
-    /// A box that holds the shape.
+    /// A bounding box.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         let both = |a: DVec3, b: DVec3, r: f64| Bounds::of_ball(a, r).union(Bounds::of_ball(b, r));
@@ -328,7 +337,7 @@ impl Shape {
             Solid::Sector { at, along, angle, radius, .. } => sector_bounds(*along, *angle, *radius).moved(*at),
             Solid::Revolved { from, along, profile } => {
                 let (across, low, high) = profile.extent();
-                // A disc reaches this far along each axis.
+                // Half-extent of a disc of radius `across` at right angles to the axis.
                 let disc = (DVec3::ONE - *along * *along).max(DVec3::ZERO).map(libm::sqrt) * across;
                 let end = |height: f64| {
                     let at = *from + *along * height;
@@ -351,8 +360,7 @@ impl Shape {
             Solid::Voxels(voxels) => voxels.bounds(),
             Solid::Sampled(sampled) => sampled.shape().bounds(),
             Solid::Placed { shape, scale, turn, by } => {
-                let corners = shape.bounds().corners().map(|p| *turn * (p * *scale) + *by);
-                corners.into_iter().fold(Bounds::EMPTY, |all, p| all.union(Bounds { min: p, max: p }))
+                Bounds::of_points(shape.bounds().corners().map(|p| *turn * (p * *scale) + *by))
             }
             Solid::Union(of) => of.iter().map(Self::bounds).fold(Bounds::EMPTY, Bounds::union),
             Solid::Intersection(of) => of[1..]
@@ -363,21 +371,21 @@ impl Shape {
         }
     }
 
-    /// Is it nothing but a box along the axes?
+    /// Is it an axis-aligned box?
     #[must_use]
     pub fn is_box(&self) -> bool {
         matches!(*self.0, Solid::Box { .. })
     }
 
-    /// The solid that it is.
+    /// Its solid.
     #[must_use]
     pub fn solid(&self) -> &Solid {
         &self.0
     }
 }
 
-/// The box around a sector with its tip at the origin: where each axis lies within the angle the ball's border is met,
-/// elsewhere the rim is.
+/// The bounding box of a sector with its apex at the origin: along an axis within the angle it extends to the sphere,
+/// otherwise to the rim.
 fn sector_bounds(along: DVec3, angle: f64, radius: f64) -> Bounds {
     let reach = |cos: f64| {
         let own = libm::acos(cos.clamp(-1.0, 1.0));
@@ -388,18 +396,10 @@ fn sector_bounds(along: DVec3, angle: f64, radius: f64) -> Bounds {
     Bounds { min: low, max: high }
 }
 
-/// `p` beside an axis through the origin: its distance from it, and its height along it.
+/// Cylindrical coordinates of `p` about the axis `along` through the origin: distance from it, and height.
 fn beside(p: DVec3, along: DVec3) -> DVec2 {
     let height = p.dot(along);
     DVec2::new((p - along * height).length(), height)
-}
-
-/// Distance of `p` from the segment from `a` to `b`.
-pub(super) fn segment_distance(p: DVec3, a: DVec3, b: DVec3) -> f64 {
-    let (p, axis) = (p - a, b - a);
-    let length = axis.length_squared();
-    let t = if length > 0.0 { (p.dot(axis) / length).clamp(0.0, 1.0) } else { 0.0 };
-    (p - axis * t).length()
 }
 
 #[cfg(test)]
@@ -433,7 +433,7 @@ mod tests {
 
     fn shape(toml: &str) -> Result<Shape, String> {
         let spec: BTreeMap<String, ShapeSpec> = toml::from_str(toml).map_err(|e| e.to_string())?;
-        spec["s"].resolve(&spec, &NoFiles)
+        Ok(spec["s"].resolve(&spec, &NoFiles)?)
     }
 
     #[test]
@@ -470,7 +470,7 @@ mod tests {
     }
 
     proptest! {
-        /// What is inside lies in the box, and no ball of the margin's size crosses the surface.
+        /// Interior points lie in the bounding box, and no ball of the margin's size crosses the surface.
         #[test]
         fn margins_and_bounds_hold(
             which in 0..7_usize, p in prop::array::uniform3(-3.0..3.0), way in prop::array::uniform3(-1.0..1.0), share in 0.0..0.999

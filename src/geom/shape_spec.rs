@@ -8,8 +8,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 
-use super::shape::Solid;
-use super::{Bounds, ClosedMesh, Outline, Profile, Shape};
+use super::{Bounds, ClosedMesh, Outline, OutlineError, Profile, Shape, ShapeError, Solid};
 use crate::math::{DMat3, DVec2, DVec3, Degrees, Point, Ref, rotation, unknown};
 
 /// A solid as a scene writes it, or several combined.
@@ -225,27 +224,27 @@ impl JsonSchema for ShapeSpec {
 /// The strokes of a sketch: polylines in units of its page's height, x to the right, y up.
 pub type SketchLines = Vec<Vec<DVec2>>;
 
-/// Corners, and triangles as three of them each.
+/// Vertices, and triangles as three indices of them each.
 pub type MeshParts = (Vec<DVec3>, Vec<[u32; 3]>);
 
 /// Closed polylines: x to the right, y up.
 pub type Rings = Vec<Vec<DVec2>>;
 
-/// Where the files and steps that shapes name are found.
+/// Access to the files and steps to which shapes refer.
 pub trait ShapeFiles {
-    /// The outlines of `text` in the font `file`, or in that which comes with the program, with an em of 1.
+    /// The outlines of `text` in the font `file`, by default the embedded one, with an em of 1.
     ///
     /// # Errors
     /// A sentence with the name and the reason.
     fn letters(&self, text: &str, file: Option<&str>) -> Result<Rings, String>;
 
-    /// The outlines of what is darker than `threshold` in the picture `file` (brighter, where `bright`), with a height of 1.
+    /// The outlines of the pixels darker than `threshold` (if `bright`, brighter) in the picture `file`, with a height of 1.
     ///
     /// # Errors
     /// A sentence with the name and the reason.
     fn picture_outlines(&self, file: &str, threshold: f64, bright: bool) -> Result<Rings, String>;
 
-    /// The index of the step of this name, which yields solids, and the shape of its space.
+    /// The index of the step called `name`, which yields solids, and the shape of its space.
     ///
     /// # Errors
     /// A sentence with the name and the reason.
@@ -273,149 +272,159 @@ impl ShapeSpec {
         Self::Inline(Box::new(SolidSpec::Box { min: Point(bounds.min), max: Point(bounds.max) }))
     }
 
-    /// The shape, its names looked up in `named` and its files in `files`.
+    /// The shape, with its names looked up in `named` and its files in `files`.
     ///
     /// # Errors
-    /// One sentence a mistake: names that lead nowhere or in a circle, sizes that are not positive, files that are no
-    /// outlines or closed meshes.
-    pub fn resolve(&self, named: &BTreeMap<String, Self>, files: &dyn ShapeFiles) -> Result<Shape, String> {
-        Lookup { named, files, within: Vec::new() }.shape(self)
+    /// [`ShapeError`]: unknown or circular names, sizes that are not positive, files without outlines or closed meshes.
+    pub fn resolve(&self, named: &BTreeMap<String, Self>, files: &dyn ShapeFiles) -> Result<Shape, ShapeError> {
+        Lookup { named, files, pending: Vec::new() }.shape(self)
     }
 }
 
+/// The resolution of a shape.
 struct Lookup<'a> {
     named: &'a BTreeMap<String, ShapeSpec>,
     files: &'a dyn ShapeFiles,
-    /// The names that are being looked up.
-    within: Vec<String>,
+    /// The names whose resolution has begun, to detect circles.
+    pending: Vec<String>,
 }
 
 impl Lookup<'_> {
-    fn shape(&mut self, spec: &ShapeSpec) -> Result<Shape, String> {
+    fn shape(&mut self, spec: &ShapeSpec) -> Result<Shape, ShapeError> {
         let solid = match spec {
             ShapeSpec::Inline(solid) => solid,
             ShapeSpec::Named(Ref { name, .. }) => {
-                if self.within.contains(name) {
-                    return Err(format!("shape `{name}` is made of itself"));
+                if self.pending.contains(name) {
+                    return Err(ShapeError::Circular(name.clone()));
                 }
-                let spec = self.named.get(name).ok_or_else(|| unknown("shape", name, self.named.keys()))?;
-                self.within.push(name.clone());
+                let spec = self.named.get(name);
+                let spec = spec.ok_or_else(|| ShapeError::Lookup(unknown("shape", name, self.named.keys())))?;
+                self.pending.push(name.clone());
                 let shape = self.shape(spec);
-                self.within.pop();
+                self.pending.pop();
                 return shape;
             }
         };
         self.solid(solid)
     }
 
-    fn all(&mut self, specs: &[ShapeSpec]) -> Result<Vec<Shape>, String> {
+    fn all(&mut self, specs: &[ShapeSpec]) -> Result<Vec<Shape>, ShapeError> {
         if specs.is_empty() {
-            return Err("combine at least one shape".to_owned());
+            return Err(ShapeError::NoParts);
         }
         specs.iter().map(|spec| self.shape(spec)).collect()
     }
 
-    fn solid(&mut self, spec: &SolidSpec) -> Result<Shape, String> {
-        let ends = |from: DVec3, to: DVec3, what: &str| {
-            (to - from).try_normalize().ok_or_else(|| format!("{what} needs two different ends"))
-        };
+    fn solid(&mut self, spec: &SolidSpec) -> Result<Shape, ShapeError> {
         Ok(Shape::new(match spec {
             SolidSpec::Union(of) => Solid::Union(self.all(of)?),
             SolidSpec::Intersection(of) => Solid::Intersection(self.all(of)?),
             SolidSpec::Difference(of) => Solid::Difference(self.all(of)?),
             SolidSpec::Box { min, max } => {
                 if !min.0.cmple(max.0).all() {
-                    return Err(format!("a box needs min below max, not {} and {}", min.0, max.0));
+                    return Err(ShapeError::Box(min.0, max.0));
                 }
                 Solid::Box { min: min.0, max: max.0 }
             }
-            SolidSpec::Ellipsoid { centre, radii } => {
-                // In the plane the third half-axis is not given, and does not matter.
-                let mut r = radii.0;
-                if r.z == 0.0 {
-                    r.z = 1.0;
-                }
-                if !r.cmpgt(DVec3::ZERO).all() {
-                    return Err(format!("an ellipsoid needs half-axes above 0, not {}", radii.0));
-                }
-                Solid::Ellipsoid { centre: centre.0, radii: r }
-            }
+            SolidSpec::Ellipsoid { centre, radii } => ellipsoid(centre.0, radii.0)?,
             &SolidSpec::Sphere { centre, radius } => Solid::Sphere { centre: centre.0, radius },
             &SolidSpec::Cylinder { from, to, radius } => {
-                ends(from.0, to.0, "a cylinder")?;
+                axis(from.0, to.0, "a cylinder")?;
                 Solid::Cylinder { from: from.0, to: to.0, radius }
             }
             &SolidSpec::Capsule { from, to, radius } => Solid::Capsule { from: from.0, to: to.0, radius },
             &SolidSpec::Cone { from, to, radii } => {
-                ends(from.0, to.0, "a cone")?;
-                return Shape::cone(from.0, to.0, radii)
-                    .ok_or_else(|| "a cone needs a radius above 0 at one end".to_owned());
+                axis(from.0, to.0, "a cone")?;
+                return Shape::cone(from.0, to.0, radii).ok_or(ShapeError::Cone);
             }
-            SolidSpec::Sector { at, toward, angle, radius } => {
-                let at = at.map_or(DVec3::ZERO, |p| p.0);
-                if angle.0 >= 180.0 {
-                    Solid::Sphere { centre: at, radius: *radius }
-                } else {
-                    let toward = toward.map_or(DVec3::Z, |p| p.0);
-                    let along = toward.try_normalize().ok_or("a sector needs a direction, not the zero vector")?;
-                    let angle = angle.radians();
-                    let side = DVec2::new(libm::sin(angle), libm::cos(angle));
-                    Solid::Sector { at, along, angle, side, radius: *radius }
-                }
-            }
-            SolidSpec::Revolve { sketch, from, to } => {
-                let from = from.map_or(DVec3::ZERO, |p| p.0);
-                let along = ends(from, to.0, "an axis")?;
-                let wrong = |message: String| format!("`{sketch}`: {message}");
-                let outline = Profile::outline(&self.files.sketch_lines(sketch)?, (to.0 - from).length());
-                let profile = outline.and_then(Profile::new).map_err(wrong)?;
-                Solid::Revolved { from, along, profile: Arc::new(profile) }
-            }
+            SolidSpec::Sector { at, toward, angle, radius } => sector(*at, *toward, *angle, *radius)?,
+            SolidSpec::Revolve { sketch, from, to } => self.revolved(sketch, *from, to.0)?,
             SolidSpec::Mesh { file } => {
-                let (points, triangles) = self.files.mesh_parts(file)?;
-                let mesh = ClosedMesh::new(points, triangles).map_err(|message| format!("`{file}`: {message}"))?;
+                let (points, triangles) = self.files.mesh_parts(file).map_err(ShapeError::Lookup)?;
+                let mesh = ClosedMesh::new(points, triangles);
+                let mesh = mesh.map_err(|error| ShapeError::Mesh { file: file.clone(), error })?;
                 Solid::Mesh(Arc::new(mesh))
             }
             SolidSpec::Letters { text, font, size, at, depth } => {
-                let rings = self.files.letters(text, font.as_deref())?;
-                outlined(&rings, *size, *at, *depth).map_err(|message| format!("{text:?}: {message}"))?
+                let rings = self.files.letters(text, font.as_deref()).map_err(ShapeError::Lookup)?;
+                let solid = outlined(&rings, *size, *at, *depth);
+                solid.map_err(|error| ShapeError::Letters { text: text.clone(), error })?
             }
             SolidSpec::Picture { file, height, at, threshold, bright, depth } => {
-                let rings = self.files.picture_outlines(file, *threshold, *bright)?;
-                outlined(&rings, *height, *at, *depth).map_err(|message| format!("`{file}`: {message}"))?
+                let rings = self.files.picture_outlines(file, *threshold, *bright).map_err(ShapeError::Lookup)?;
+                let solid = outlined(&rings, *height, *at, *depth);
+                solid.map_err(|error| ShapeError::Picture { file: file.clone(), error })?
             }
             SolidSpec::Shell { of, outside, inside } => {
                 if outside + inside <= 0.0 {
-                    return Err("a shell needs an `outside` or an `inside` above 0".to_owned());
+                    return Err(ShapeError::Shell);
                 }
                 Solid::Shell { of: self.shape(of)?, outside: *outside, inside: *inside }
             }
-            SolidSpec::Grown(step) => {
-                let (index, space) = self.files.solid_step(step)?;
-                // Named like no shape can be.
-                let mark = format!("what `{step}` grows in");
-                if self.within.contains(&mark) {
-                    return Err(format!("step `{step}` grows in what it grew itself"));
-                }
-                self.within.push(mark);
-                let bounds = self.shape(&space)?.bounds();
-                self.within.pop();
-                Solid::Grown(index, bounds)
-            }
+            SolidSpec::Grown(step) => self.grown(step)?,
             SolidSpec::Placed { shape, scale, about, turn, by } => {
                 let axis = about.map_or(DVec3::Y, |p| p.0);
-                let axis = axis.try_normalize().ok_or("an axis needs a direction, not the zero vector")?;
+                let axis = axis.try_normalize().ok_or(ShapeError::NoDirection("an axis"))?;
                 let by = by.map_or(DVec3::ZERO, |p| p.0);
                 return Ok(self.shape(shape)?.placed(*scale, rotation(axis, turn.radians()), by));
             }
         }))
     }
+
+    /// The solid of revolution of a sketch.
+    fn revolved(&mut self, sketch: &str, from: Option<Point>, to: DVec3) -> Result<Solid, ShapeError> {
+        let from = from.map_or(DVec3::ZERO, |p| p.0);
+        let along = axis(from, to, "an axis")?;
+        let lines = self.files.sketch_lines(sketch).map_err(ShapeError::Lookup)?;
+        let profile = Profile::outline(&lines, (to - from).length()).and_then(Profile::new);
+        let profile = profile.map_err(|error| ShapeError::Sketch { file: sketch.to_owned(), error })?;
+        Ok(Solid::Revolved { from, along, profile: Arc::new(profile) })
+    }
+
+    /// The placeholder of a step's solid.
+    fn grown(&mut self, step: &str) -> Result<Solid, ShapeError> {
+        let (index, space) = self.files.solid_step(step).map_err(ShapeError::Lookup)?;
+        // No shape can have this name.
+        let mark = format!("what `{step}` grows in");
+        if self.pending.contains(&mark) {
+            return Err(ShapeError::CircularStep(step.to_owned()));
+        }
+        self.pending.push(mark);
+        let bounds = self.shape(&space)?.bounds();
+        self.pending.pop();
+        Ok(Solid::Grown(index, bounds))
+    }
 }
 
-/// Outlines of unit size as a solid of this one; `at` is where their origin is.
-fn outlined(rings: &Rings, size: f64, at: Option<Point>, depth: Option<f64>) -> Result<Solid, String> {
+/// The direction from one end of `what` to the other.
+fn axis(from: DVec3, to: DVec3, what: &'static str) -> Result<DVec3, ShapeError> {
+    (to - from).try_normalize().ok_or(ShapeError::SameEnds(what))
+}
+
+fn ellipsoid(centre: DVec3, radii: DVec3) -> Result<Solid, ShapeError> {
+    // In the plane the third half-axis is not given, and does not matter.
+    let own = if radii.z == 0.0 { radii.with_z(1.0) } else { radii };
+    if !own.cmpgt(DVec3::ZERO).all() {
+        return Err(ShapeError::Ellipsoid(radii));
+    }
+    Ok(Solid::Ellipsoid { centre, radii: own })
+}
+
+fn sector(at: Option<Point>, toward: Option<Point>, angle: Degrees, radius: f64) -> Result<Solid, ShapeError> {
     let at = at.map_or(DVec3::ZERO, |p| p.0);
-    // Upright in space, only the middle is along y.
+    if angle.0 >= 180.0 {
+        return Ok(Solid::Sphere { centre: at, radius });
+    }
+    let along = toward.map_or(DVec3::Z, |p| p.0).try_normalize().ok_or(ShapeError::NoDirection("a sector"))?;
+    let angle = angle.radians();
+    let side = DVec2::new(libm::sin(angle), libm::cos(angle));
+    Ok(Solid::Sector { at, along, angle, side, radius })
+}
+
+/// The solid of outlines of unit size scaled to `size`, with their origin at `at`.
+fn outlined(rings: &Rings, size: f64, at: Option<Point>, depth: Option<f64>) -> Result<Solid, OutlineError> {
+    let at = at.map_or(DVec3::ZERO, |p| p.0);
+    // Upright in space, the outline has no y; the solid is moved along it.
     let origin = if depth.is_some() { DVec2::new(at.x, at.z) } else { at.truncate() };
     let placed: Rings = rings.iter().map(|ring| ring.iter().map(|&p| origin + p * size).collect()).collect();
     let solid = Solid::Outlined { outline: Arc::new(Outline::new(&placed)?), depth };

@@ -1,13 +1,12 @@
 //! Strokes of a sketch: polylines, and the distance to the nearest of them.
 
-use super::Bounds;
-use super::shape::segment_distance;
+use super::{Bounds, segment_distance};
 use crate::math::DVec3;
 
 /// Segments that share a bounding box.
 const GROUP: usize = 16;
 
-/// Polylines with a fast query for the distance to them.
+/// Polylines with a fast distance query.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strokes {
     lines: Vec<Vec<DVec3>>,
@@ -28,7 +27,7 @@ impl Strokes {
                 segments.chunks(GROUP).map(<[_]>::to_vec).collect::<Vec<_>>()
             })
             .map(|group| {
-                let bounds = group.iter().flatten().fold(Bounds::EMPTY, |b, &p| b.union(Bounds { min: p, max: p }));
+                let bounds = Bounds::of_points(group.iter().flatten().copied());
                 (bounds, group)
             })
             .collect();
@@ -45,8 +44,7 @@ impl Strokes {
     #[must_use]
     pub fn distance(&self, p: DVec3) -> f64 {
         self.groups.iter().fold(f64::INFINITY, |nearest, (bounds, group)| {
-            let to_box = (bounds.min - p).max(p - bounds.max).max(DVec3::ZERO).length();
-            if to_box >= nearest {
+            if bounds.distance(p) >= nearest {
                 return nearest;
             }
             group.iter().map(|&[a, b]| segment_distance(p, a, b)).fold(nearest, f64::min)

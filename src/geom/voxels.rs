@@ -1,11 +1,11 @@
-//! Signed distances on a grid: a solid that grew, as a shape for others.
+//! A signed distance field on a grid: a grown solid, as a shape for other steps.
 
 use rayon::prelude::*;
 
 use super::Bounds;
 use crate::math::DVec3;
 
-/// A solid on a grid of samples: at each the signed distance from its surface, negative inside.
+/// A signed distance field on a grid, negative inside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Voxels {
     size: [usize; 3],
@@ -15,8 +15,8 @@ pub struct Voxels {
 }
 
 impl Voxels {
-    /// The solid of the samples that `is_inside`, a list by `x + size.x (y + size.y z)`; the first sample is at `low`.
-    /// Distances are exact between samples, less half a step on each side.
+    /// The distance field of the samples where `is_inside`, indexed by `x + size.x (y + size.y z)`; the first sample is at
+    /// `low`. The surface is half a step from the samples inside; distances between samples are exact.
     #[must_use]
     pub fn new(size: [u32; 3], spacing: f64, low: DVec3, is_inside: &[bool]) -> Self {
         let size = size.map(|s| s as usize);
@@ -38,7 +38,7 @@ impl Voxels {
         f64::from(self.distances[x + self.size[0] * (y + self.size[1] * z)])
     }
 
-    /// Signed distance from the surface, interpolated between samples; beyond the grid the distance from it is added.
+    /// Signed distance of `p`, trilinearly interpolated; beyond the grid its distance from the grid is added.
     #[must_use]
     pub fn distance(&self, p: DVec3) -> f64 {
         let last = DVec3::from_array(self.size.map(|s| s as f64 - 1.0));
@@ -50,13 +50,13 @@ impl Voxels {
             return self.at(low[0], low[1], low[2]);
         }
         let high: [usize; 3] = std::array::from_fn(|axis| (low[axis] + 1).min(self.size[axis] - 1));
-        let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
-        let line = |y: usize, z: usize| mix(self.at(low[0], y, z), self.at(high[0], y, z), share.x);
-        let face = |z: usize| mix(line(low[1], z), line(high[1], z), share.y);
-        mix(face(low[2]), face(high[2]), share.z) + (at - inside).length() * self.spacing
+        let lerp = |a: f64, b: f64, t: f64| a + (b - a) * t;
+        let line = |y: usize, z: usize| lerp(self.at(low[0], y, z), self.at(high[0], y, z), share.x);
+        let face = |z: usize| lerp(line(low[1], z), line(high[1], z), share.y);
+        lerp(face(low[2]), face(high[2]), share.z) + (at - inside).length() * self.spacing
     }
 
-    /// A box that holds it.
+    /// A bounding box.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         let last = DVec3::from_array(self.size.map(|s| s as f64 - 1.0));
@@ -64,11 +64,11 @@ impl Voxels {
     }
 }
 
-/// Farther than any grid is long.
+/// Stands for infinity: above the square of any grid's diagonal.
 const FAR: f32 = 1e12;
 
-/// Squared distances, in steps, of each sample from the nearest that is `set`: exact, an axis at a time (Felzenszwalb and
-/// Huttenlocher 2012).
+/// The squared Euclidean distance transform: for each sample the distance, in grid steps, from the nearest that is `set`;
+/// exact, an axis at a time (Felzenszwalb and Huttenlocher 2012).
 fn squared_distances(size: [usize; 3], set: impl Fn(usize) -> bool + Sync) -> Vec<f32> {
     let [nx, ny, nz] = size;
     let mut all: Vec<f32> = (0..nx * ny * nz).into_par_iter().map(|i| if set(i) { 0.0 } else { FAR }).collect();
@@ -84,7 +84,7 @@ fn squared_distances(size: [usize; 3], set: impl Fn(usize) -> bool + Sync) -> Ve
         },
     );
     if nz > 1 {
-        // Along z: rows of x and z, gathered for each y.
+        // Along z: slices of x and z, gathered for each y.
         let layers: Vec<Vec<f32>> = (0..ny)
             .into_par_iter()
             .map_init(
@@ -108,7 +108,7 @@ fn squared_distances(size: [usize; 3], set: impl Fn(usize) -> bool + Sync) -> Ve
     all
 }
 
-/// Along the first axis samples are set or not: there and back, counting steps.
+/// The transform along the first axis, whose samples are 0 or [`FAR`]: a forward and a backward pass.
 fn sweep(row: &mut [f32]) {
     let pass = |steps: &mut f32, value: &mut f32| {
         *steps = if *value == 0.0 { 0.0 } else { *steps + 1.0 };
@@ -124,8 +124,9 @@ fn sweep(row: &mut [f32]) {
 /// The lower envelope of parabolas over a row.
 #[derive(Default)]
 struct Envelope {
-    /// Where the parabolas of the envelope stand, and from where each is the lowest.
-    stand: Vec<usize>,
+    /// Vertices of the parabolas of the envelope.
+    vertices: Vec<usize>,
+    /// Where each becomes the lowest.
     from: Vec<f32>,
     values: Vec<f32>,
 }
@@ -139,32 +140,32 @@ impl Envelope {
         }
         self.values.clear();
         self.values.extend_from_slice(row);
-        self.stand.clear();
+        self.vertices.clear();
         self.from.clear();
         let key = |q: usize| f64::from(row[q]) + (q * q) as f64;
         for q in 0..row.len() {
             loop {
-                let Some(&last) = self.stand.last() else {
-                    self.stand.push(q);
+                let Some(&last) = self.vertices.last() else {
+                    self.vertices.push(q);
                     self.from.push(f32::NEG_INFINITY);
                     break;
                 };
                 let cross = ((key(q) - key(last)) / (2 * (q - last)) as f64) as f32;
                 if cross > self.from[self.from.len() - 1] {
-                    self.stand.push(q);
+                    self.vertices.push(q);
                     self.from.push(cross);
                     break;
                 }
-                self.stand.pop();
+                self.vertices.pop();
                 self.from.pop();
             }
         }
         let mut at = 0;
         for (x, value) in row.iter_mut().enumerate() {
-            while at + 1 < self.stand.len() && self.from[at + 1] < x as f32 {
+            while at + 1 < self.vertices.len() && self.from[at + 1] < x as f32 {
                 at += 1;
             }
-            let q = self.stand[at];
+            let q = self.vertices[at];
             let d = x.abs_diff(q) as f32;
             *value = self.values[q] + d * d;
         }
@@ -178,7 +179,7 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// As by trying all pairs.
+        /// Against brute force.
         #[test]
         fn distances_are_exact(seed in any::<u64>(), share in 1..30_u64) {
             let size = [9, 6, 7];

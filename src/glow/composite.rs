@@ -1,4 +1,4 @@
-//! Light added to a photograph, or to black.
+//! Compositing of light over a photograph or black.
 
 use rayon::prelude::*;
 
@@ -6,20 +6,20 @@ use super::{Canvas, Layer, Pass};
 use crate::math::{mix, to_srgb};
 use crate::raster::{Grey, Plate, Samples};
 
-/// Layers of light on their way into a picture.
+/// Layers of light to be composited.
 pub struct Composite<'a> {
     /// The pixels.
     pub canvas: Canvas,
     /// The photograph; black without one.
     pub plate: Option<&'a Plate>,
-    /// White where something hides the light; as large as the view.
+    /// White where a foreground hides the light; of the view's size.
     pub matte: Option<&'a Grey>,
     /// The light, in linear Rec. 709.
     pub layers: &'a [Layer],
 }
 
 impl Composite<'_> {
-    /// Share of the light that the foreground lets through at a pixel.
+    /// Transmittance of the foreground at a pixel, 0 to 1.
     fn open(&self, x: usize, y: usize) -> f32 {
         self.matte.map_or(1.0, |matte| {
             let [w, h] = matte.size();
@@ -28,12 +28,12 @@ impl Composite<'_> {
         })
     }
 
-    /// How much of row `y` the foreground hides.
+    /// Row `y` of the matte: 1 where the foreground hides the light.
     pub fn matte_row(&self, y: usize, row: &mut [f32]) {
         row.iter_mut().enumerate().for_each(|(x, out)| *out = 1.0 - self.open(x, y));
     }
 
-    /// The colour of a layer in the plate's own colours.
+    /// The colour of a layer in the plate's colour space.
     fn colour(&self, layer: &Layer) -> [f32; 3] {
         let own = self.plate.map_or(layer.colour, |plate| {
             plate.from_rec709.map(|row| (0..3).map(|i| row[i] * layer.colour[i]).sum::<f64>().max(0.0))
@@ -41,8 +41,7 @@ impl Composite<'_> {
         own.map(|c| c as f32)
     }
 
-    /// The light that a pass adds to a channel of row `y`, in linear light: matted, and coloured by the photograph where
-    /// it falls on that.
+    /// The light that a pass adds to a channel of row `y`, linear and matted; for [`Pass::Cloud`], times the photograph.
     pub fn pass(&self, pass: Pass, channel: usize, y: usize, row: &mut [f32]) {
         row.fill(0.0);
         let width = self.canvas.size[0] as usize;
@@ -55,12 +54,12 @@ impl Composite<'_> {
         }
     }
 
-    /// The photograph's own light.
+    /// The photograph's sample `i`, three a pixel, in linear light.
     pub fn light(&self, i: usize) -> f32 {
         self.plate.map_or(0.0, |plate| plate.light(i))
     }
 
-    /// The photograph with all light added, in a channel of row `y`, in linear light.
+    /// A channel of row `y` of the photograph with all light added, in linear light.
     pub fn linear(&self, channel: usize, y: usize, row: &mut [f32]) {
         let width = self.canvas.size[0] as usize;
         let mut sum: Vec<f32> = (0..width).map(|x| self.light((y * width + x) * 3 + channel)).collect();
@@ -71,11 +70,11 @@ impl Composite<'_> {
         row.copy_from_slice(&sum);
     }
 
-    /// Rows `rows` as a screen shows them, red, green and blue as code values of the plate's own depth and curve; 8 or 16
-    /// bits of sRGB (`is_deep`) without one, or where it is linear.
+    /// The rows `rows`, display-referred: red, green and blue as code values of the plate's depth and curve; without a plate,
+    /// or with a linear one, as sRGB of 8 or (`is_deep`) 16 bits.
     ///
-    /// Added light rolls off towards white. Pixels that it changes by less than half a code value are copied; only
-    /// others are dithered.
+    /// Added light rolls off towards white. Pixels that it changes by less than half a code value are copied; the others
+    /// are dithered.
     #[must_use]
     pub fn display(&self, rows: std::ops::Range<usize>, is_deep: bool) -> Vec<u16> {
         let width = self.canvas.size[0] as usize;
@@ -113,7 +112,7 @@ impl Composite<'_> {
                     }
                     None => 0.0,
                 };
-                // Codes may stand for the same light: what counts is how far light moves them.
+                // Several code values may stand for the same light: the difference of encodings counts.
                 let moved = |channel: usize| match self.plate {
                     Some(plate) if is_coded => codes[channel] - plate.encode(channel, self.light(first + channel)),
                     _ => codes[channel] - own(channel),
@@ -133,14 +132,14 @@ impl Composite<'_> {
     }
 }
 
-/// `p + (1 - p) (1 - exp(-g / (1 - p)))`: light `g` added to `p` as a photograph takes it, never more than white; `p`
-/// where there is no light, or it is white already.
+/// Exponential highlight compression `p + (1 - p) (1 - exp(-g / (1 - p)))` of light `g` added to `p`: at most 1, and `p` where
+/// g = 0 or p >= 1.
 fn roll_off(p: f64, g: f64) -> f64 {
     let room = 1.0 - p;
     if room <= 0.0 { p.min(1.0) } else { p + room * (1.0 - libm::exp(-g / room)) }
 }
 
-/// A number from 0 to 1 for a sample: what rounding down adds before.
+/// The dither of sample `i`: a uniform number from 0 to 1 to be added before truncation.
 fn dither(i: u64) -> f64 {
     (mix(i) >> 40) as f64 / f64::from(1_u32 << 24)
 }

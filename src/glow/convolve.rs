@@ -1,20 +1,20 @@
-//! Convolution with broad kernels, by the fast Fourier transform.
+//! Convolution with wide kernels by the fast Fourier transform.
 
 use rayon::prelude::*;
 use rustfft::num_complex::Complex;
 use rustfft::{FftDirection, FftPlanner};
 
-/// A picture of one number a pixel.
+/// A picture of one channel.
 #[derive(Clone, Debug)]
-pub(super) struct Plane {
+pub(super) struct LightPlane {
     pub size: [usize; 2],
     pub values: Vec<f32>,
 }
 
-/// `light` spread by two kernels that are even about their middle, each told by the offset in pixels.
-pub(super) fn convolve(light: &Plane, kernels: impl Fn(i64, i64) -> [f32; 2] + Sync) -> [Plane; 2] {
+/// The convolutions of `light` with two even kernels, functions of the offset in pixels.
+pub(super) fn convolve(light: &LightPlane, kernels: impl Fn(i64, i64) -> [f32; 2] + Sync) -> [LightPlane; 2] {
     let [width, height] = light.size;
-    // Twice as large, so that nothing comes in from the other side.
+    // Zero-padded to twice the size, so that nothing wraps around.
     let [w, h] = light.size.map(|s| smooth_size(2 * s));
     let mut image = vec![Complex::new(0.0_f32, 0.0); w * h];
     for y in 0..height {
@@ -32,19 +32,19 @@ pub(super) fn convolve(light: &Plane, kernels: impl Fn(i64, i64) -> [f32; 2] + S
     });
     let image = transform(image, [w, h], FftDirection::Forward);
     let mut product = transform(kernel, [w, h], FftDirection::Forward);
-    // Light is real and both kernels are: the one's result is the real part, the other's the imaginary.
+    // Light and kernels are real: the results are the real and the imaginary part of one complex convolution.
     product.par_iter_mut().zip(&image).for_each(|(k, i)| *k *= i);
     let spread = transform(product, [h, w], FftDirection::Inverse);
     let scale = 1.0 / (w * h) as f32;
     let part = |of: fn(&Complex<f32>) -> f32| {
         let values =
             (0..height).flat_map(|y| spread[y * w..y * w + width].iter().map(|c| (of(c) * scale).max(0.0))).collect();
-        Plane { size: light.size, values }
+        LightPlane { size: light.size, values }
     };
     [part(|c| c.re), part(|c| c.im)]
 }
 
-/// The transform of an array of `w` by `h`, as one of `h` by `w`.
+/// The 2D transform of an array of `w` by `h`, transposed.
 fn transform(mut data: Vec<Complex<f32>>, [w, h]: [usize; 2], direction: FftDirection) -> Vec<Complex<f32>> {
     let mut planner = FftPlanner::new();
     let rows = planner.plan_fft(w, direction);
@@ -58,7 +58,7 @@ fn transform(mut data: Vec<Complex<f32>>, [w, h]: [usize; 2], direction: FftDire
     turned
 }
 
-/// The least size from `least` on whose factors are 2, 3 and 5, which transform fast.
+/// The least 5-smooth number, with prime factors 2, 3 and 5, that is at least `least`: such sizes transform fast.
 fn smooth_size(least: usize) -> usize {
     (least.max(1)..)
         .find(|&size| {
@@ -73,8 +73,8 @@ fn smooth_size(least: usize) -> usize {
         .unwrap_or(least)
 }
 
-impl Plane {
-    /// The value at (x, y) in pixels of it, pixel centres at halves, by a Catmull-Rom spline; never negative.
+impl LightPlane {
+    /// The value at pixel coordinates, pixel centres at halves, by bicubic Catmull-Rom interpolation, clamped to 0 and above.
     pub fn at(&self, x: f64, y: f64) -> f32 {
         let [width, height] = self.size;
         let (x, y) = (x - 0.5, y - 0.5);
@@ -90,7 +90,7 @@ impl Plane {
     }
 }
 
-/// Weights of the four neighbours at fraction `t` between the middle two (Catmull and Rom 1974).
+/// Catmull-Rom weights of four neighbours at the fraction `t` between the middle two (Catmull and Rom 1974).
 fn weights(t: f32) -> [f32; 4] {
     let (t2, t3) = (t * t, t * t * t);
     [0.5 * (-t3 + 2.0 * t2 - t), 0.5 * (3.0 * t3 - 5.0 * t2 + 2.0), 0.5 * (-3.0 * t3 + 4.0 * t2 + t), 0.5 * (t3 - t2)]
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn is_the_sum_over_all_sources() {
         let size = [23, 14];
-        let mut light = Plane { size, values: vec![0.0; size[0] * size[1]] };
+        let mut light = LightPlane { size, values: vec![0.0; size[0] * size[1]] };
         let sources = [(3, 2, 1.0), (22, 13, 2.5), (0, 7, 0.5)];
         sources.iter().for_each(|&(x, y, v)| light.values[y * size[0] + x] = v);
         let kernel = |dx: i64, dy: i64| {

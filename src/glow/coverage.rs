@@ -1,4 +1,4 @@
-//! The channel itself: how much of each pixel it covers.
+//! The channel: antialiased coverage of pixels.
 
 use rayon::prelude::*;
 
@@ -6,22 +6,24 @@ use super::Canvas;
 use crate::math::DVec2;
 use crate::model::Piece;
 
-/// Rows of a strip, which one thread works on.
+/// Rows of a strip, the unit of parallel work.
 const STRIP: usize = 32;
 
-/// A piece in pixels.
-struct Drawn {
+/// A piece in pixel coordinates.
+struct ScreenPiece {
     from: DVec2,
-    way: DVec2,
+    /// From one end to the other.
+    span: DVec2,
     length2: f64,
     radii: [f64; 2],
     light: [f64; 2],
 }
 
-/// The share of each pixel that `pieces` cover, row by row, `scale` times smaller than `canvas`: pixels see through a
-/// quadratic B-spline, so that a channel thinner than a pixel sends as much light as it has area, however it lies.
+/// The coverage of each pixel by `pieces`, times their light, a function `light` of the radius; row by row, in a picture `scale`
+/// times smaller than `canvas`.
 ///
-/// Shares count with the light that `light` tells from the radius.
+/// The pixel filter is a quadratic B-spline, so that a channel thinner than a pixel emits light in proportion to its area at any
+/// angle.
 pub(super) fn cover<'a>(
     canvas: &Canvas,
     scale: u32,
@@ -30,14 +32,14 @@ pub(super) fn cover<'a>(
 ) -> Vec<f32> {
     let [width, height] = canvas.size.map(|s| s.div_ceil(scale) as usize);
     let factor = 1.0 / f64::from(scale);
-    let drawn: Vec<Drawn> = pieces
+    let drawn: Vec<ScreenPiece> = pieces
         .map(|piece| {
             let [from, to] = piece.ends.map(|p| canvas.to_pixels(p) * factor);
-            let way = to - from;
-            Drawn {
+            let span = to - from;
+            ScreenPiece {
                 from,
-                way,
-                length2: way.length_squared(),
+                span,
+                length2: span.length_squared(),
                 radii: piece.radii.map(|r| r / canvas.frame.pixel * factor),
                 light: piece.radii.map(&light),
             }
@@ -62,14 +64,14 @@ pub(super) fn cover<'a>(
     values
 }
 
-impl Drawn {
+impl ScreenPiece {
     fn reach(&self) -> f64 {
         self.radii[0].max(self.radii[1]) + 1.5
     }
 
-    /// The rows that it may touch.
+    /// The rows that it may cover.
     fn rows(&self) -> [f64; 2] {
-        let (a, b) = (self.from.y, self.from.y + self.way.y);
+        let (a, b) = (self.from.y, self.from.y + self.span.y);
         [a.min(b) - self.reach() - 0.5, a.max(b) + self.reach() + 0.5]
     }
 
@@ -81,12 +83,12 @@ impl Drawn {
             let middle = (top + y) as f64 + 0.5;
             // The part of the piece near this row bounds the columns.
             let (mut t0, mut t1) = (0.0, 1.0);
-            if self.way.y.abs() > 1e-9 {
-                let at = |y: f64| (y - self.from.y) / self.way.y;
+            if self.span.y.abs() > 1e-9 {
+                let at = |y: f64| (y - self.from.y) / self.span.y;
                 let (a, b) = (at(middle - self.reach()), at(middle + self.reach()));
                 (t0, t1) = (a.min(b).clamp(0.0, 1.0), a.max(b).clamp(0.0, 1.0));
             }
-            let (x0, x1) = (self.from.x + self.way.x * t0, self.from.x + self.way.x * t1);
+            let (x0, x1) = (self.from.x + self.span.x * t0, self.from.x + self.span.x * t1);
             let left = (x0.min(x1) - self.reach() - 0.5).max(0.0) as usize;
             let right = (x0.max(x1) + self.reach() + 0.5).min(width as f64 - 1.0);
             if right < 0.0 {
@@ -94,7 +96,7 @@ impl Drawn {
             }
             let row = &mut rows[y * width..(y + 1) * width];
             for (x, value) in row.iter_mut().enumerate().take(right as usize + 1).skip(left) {
-                // Where pieces join both cover the same: the larger counts.
+                // Where pieces join, both cover the same area: the maximum counts.
                 *value = value.max(self.share(DVec2::new(x as f64 + 0.5, middle)) as f32);
             }
         }
@@ -102,16 +104,15 @@ impl Drawn {
 
     fn share(&self, p: DVec2) -> f64 {
         let along =
-            if self.length2 > 0.0 { ((p - self.from).dot(self.way) / self.length2).clamp(0.0, 1.0) } else { 0.0 };
-        let distance = (p - self.from - self.way * along).length();
+            if self.length2 > 0.0 { ((p - self.from).dot(self.span) / self.length2).clamp(0.0, 1.0) } else { 0.0 };
+        let distance = (p - self.from - self.span * along).length();
         let radius = self.radii[0] + (self.radii[1] - self.radii[0]) * along;
         let light = self.light[0] + (self.light[1] - self.light[0]) * along;
         (seen(radius - distance) - seen(-radius - distance)) * light
     }
 }
 
-/// The integral up to `x` of the quadratic B-spline, which is what three pixels' boxes convolved give. A tent would leave a
-/// tenth more or less light in channels at 45 degrees.
+/// The integral up to `x` of the quadratic B-spline. A tent filter would change the light of channels at 45 degrees by a tenth.
 fn seen(x: f64) -> f64 {
     let end = |x: f64| x * x * x / 6.0;
     match x {
@@ -128,7 +129,7 @@ mod tests {
     use super::*;
     use crate::model::{ViewFrame, ViewSpec};
 
-    /// The light of a channel is its length times its width, however thin it is and however it lies.
+    /// The light of a channel is its length times its width, at any width and angle.
     #[test]
     fn thin_channels_keep_their_light() {
         let size = [160, 120];

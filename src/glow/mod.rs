@@ -1,8 +1,8 @@
-//! The light of strokes: the channel itself, the glow about it, the halo that the air makes, light thrown on clouds; and
-//! all of that over a photograph.
+//! The light of strokes: the channel, the glow around it, the atmospheric halo, the illumination of clouds; composited over a
+//! photograph.
 //!
-//! Layers are kept apart as one number a pixel, in linear light; colours come in when pixels are written. Later stages
-//! need never handle light that is negative or not finite.
+//! A layer is one intensity a pixel, in linear light; colours are applied when pixels are written. Later stages need never
+//! handle light that is negative or not finite.
 
 mod canvas;
 mod composite;

@@ -1,21 +1,55 @@
-//! The paper's glow: a second distance field, from the stroke (Xu and Mould 2008, section 3, Figs 3 and 4).
+//! The glow of strokes by a second distance field (Xu and Mould 2008, section 3, Figs 3 and 4).
 
 use std::collections::HashMap;
 
 use super::Canvas;
 use crate::graph::{Graph, Lattice, LatticeError, Node, Window};
-use crate::math::{DVec2, DVec3, Progress, Stream};
+use crate::math::{DVec2, Progress, Stream};
 use crate::model::Stroke;
 use crate::plan::{Goal, PlanError, mean_cost, plan};
 
-/// The default grain: so many lattice steps from the bottom of a view to its top.
+/// Default resolution: lattice steps over the height of the view.
 const GRAINS: f64 = 720.0;
-/// Bytes that a node takes at the peak, with those of the other field, which is made at the same time.
+/// Peak memory a node, in bytes, together with the other field, which is computed at the same time.
 const NODE_BYTES: u64 = 128;
-/// Beyond so many times T there is nothing left to see: `exp(-9)`.
+/// Extent of the glow, in multiples of T: `exp(-9)` is invisible.
 const REACH: f64 = 3.0;
 
-/// A picture of V on a lattice.
+/// Why there is no field.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub(super) enum NearError {
+    /// The lattice cannot be constructed.
+    #[error(transparent)]
+    Lattice(#[from] LatticeError),
+    /// The lattice exceeds the memory limit.
+    #[error(
+        "its lattice of {nodes} nodes needs about {needed} MB of memory, more than the {allowed} MB allowed: use a coarser `grain`"
+    )]
+    Memory {
+        /// Nodes of the lattice.
+        nodes: u64,
+        /// Megabytes that it needs.
+        needed: u64,
+        /// Megabytes allowed.
+        allowed: u64,
+    },
+    /// The search failed or was cancelled.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+}
+
+/// The parameters of the fields of a stroke.
+#[derive(Clone, Copy)]
+pub(super) struct NearParameters<'a> {
+    pub stroke: &'a Stroke,
+    pub canvas: &'a Canvas,
+    pub seed: u64,
+    /// Memory limit, in bytes.
+    pub max_memory: u64,
+    pub progress: &'a Progress,
+}
+
+/// V at the nodes of a lattice.
 pub(super) struct NearField {
     origin: DVec2,
     spacing: f64,
@@ -23,67 +57,75 @@ pub(super) struct NearField {
     values: Vec<f32>,
 }
 
-impl NearField {
-    /// The glow of the core of `stroke`, or of its branches, around `canvas`: apart, since where a thin branch leaves a
-    /// thick channel its T would bite a piece out of the other's glow.
+impl NearParameters<'_> {
+    /// The glow of the core of the stroke, or of its branches: separately, since where a thin branch leaves a thick channel its
+    /// T would cut a piece out of the channel's glow.
     ///
     /// # Errors
-    /// [`PlanError::Cancelled`], and a sentence where weights or the grain do not fit.
-    pub fn new(
-        stroke: &Stroke,
-        is_core: bool,
-        canvas: &Canvas,
-        seed: u64,
-        max_memory: u64,
-        progress: &Progress,
-    ) -> Result<Self, Result<String, PlanError>> {
-        if stroke.glow.near.neighbours.count() == 4 {
-            Self::with::<4>(stroke, is_core, canvas, seed, max_memory, progress)
-        } else {
-            Self::with::<8>(stroke, is_core, canvas, seed, max_memory, progress)
+    /// [`NearError`].
+    pub fn field(&self, is_core: bool) -> Result<NearField, NearError> {
+        match self.stroke.glow.near.neighbours.count() {
+            4 => self.field_on::<4>(is_core),
+            _ => self.field_on::<8>(is_core),
         }
     }
 
-    fn with<const N: usize>(
-        stroke: &Stroke,
-        is_core: bool,
-        canvas: &Canvas,
-        seed: u64,
-        max_memory: u64,
-        progress: &Progress,
-    ) -> Result<Self, Result<String, PlanError>> {
-        let near = &stroke.glow.near;
+    fn field_on<const N: usize>(&self, is_core: bool) -> Result<NearField, NearError> {
+        let weights = self.stroke.glow.near.weights;
+        let window = self.window()?;
+        let stream = Stream::new(self.seed, &format!("glow/{}", self.stroke.name));
+        let lattice: Lattice<N> = Lattice::plain(window, &stream, weights)?;
+        let (generators, thickness) = self.generators(&lattice, is_core);
+        let mean = mean_cost::<N>(weights)?;
+        let plan = plan(&lattice, &generators, Goal::Everything, self.progress)?;
+        let range = lattice.weight_range();
+        let costs = plan.costs(lattice.nodes());
+        let nearest = plan.labels(lattice.nodes());
+        let mut values = vec![0.0_f32; lattice.cells()];
+        for (value, (cost, source)) in values.iter_mut().zip(costs.iter().zip(&nearest)) {
+            let (Some(cost), Some(source)) = (cost, source) else { continue };
+            let distance = range.real(*cost) / mean * window.spacing;
+            // V = exp(-(d / T)^2)
+            let ratio = distance / thickness[source].max(f64::MIN_POSITIVE);
+            *value = libm::exp(-ratio * ratio) as f32;
+        }
+        let origin = window.position([0; 3]).truncate();
+        Ok(NearField { origin, spacing: window.spacing, size: [window.size[0], window.size[1]], values })
+    }
+
+    /// The lattice's window: the canvas with a margin, from beyond which no glow is visible.
+    fn window(&self) -> Result<Window, NearError> {
+        let (near, canvas) = (&self.stroke.glow.near, self.canvas);
         let spacing = near.grain.unwrap_or(canvas.frame.extent[1] / GRAINS);
-        let thickest = stroke.pieces.iter().flat_map(|p| p.radii).fold(0.0, f64::max) * near.spread;
-        // What comes in from beyond the border is seen too.
+        let thickest = self.stroke.pieces.iter().flat_map(|p| p.radii).fold(0.0, f64::max) * near.spread;
         let margin = (thickest * REACH).min(canvas.frame.extent[1]) + spacing;
         let corners = [[0, canvas.size[1]], [canvas.size[0], 0]]
             .map(|[x, y]| canvas.to_scene(DVec2::new(f64::from(x), f64::from(y))));
-        let wrong = |error: LatticeError| Ok(error.to_string());
         let [low, high] = [corners[0] - margin, corners[1] + margin].map(|p| p.extend(0.0));
-        let window = Window::new(low, high, spacing, 2).map_err(wrong)?;
+        let window = Window::new(low, high, spacing, 2)?;
         let needed = window.nodes().saturating_mul(NODE_BYTES);
-        if needed > max_memory {
-            return Err(Ok(format!(
-                "its lattice of {} nodes needs about {} MB of memory, more than the {} MB allowed: use a coarser `grain`",
-                window.nodes(),
-                needed.div_ceil(1_000_000),
-                max_memory / 1_000_000
-            )));
+        if needed > self.max_memory {
+            return Err(NearError::Memory {
+                nodes: window.nodes(),
+                needed: needed.div_ceil(1_000_000),
+                allowed: self.max_memory / 1_000_000,
+            });
         }
-        let stream = Stream::new(seed, &format!("glow/{}", stroke.name));
-        let lattice: Lattice<N> = Lattice::plain(window, &stream, near.weights).map_err(wrong)?;
+        Ok(window)
+    }
 
-        // T at each node that the stroke passes; the thickest where several are.
+    /// The nodes along the stroke, and T at each: the greatest of several.
+    fn generators<const N: usize>(&self, lattice: &Lattice<N>, is_core: bool) -> (Vec<Node>, HashMap<Node, f64>) {
+        let spacing = lattice.window().spacing;
         let mut thickness: HashMap<Node, f64> = HashMap::new();
         let mut generators = Vec::new();
-        for piece in stroke.pieces.iter().filter(|piece| piece.is_core == is_core) {
-            let way = piece.ends[1] - piece.ends[0];
-            let steps = libm::ceil(way.length() / spacing * 2.0).max(1.0) as u32;
+        for piece in self.stroke.pieces.iter().filter(|piece| piece.is_core == is_core) {
+            let span = piece.ends[1] - piece.ends[0];
+            let steps = libm::ceil(span.length() / spacing * 2.0).max(1.0) as u32;
             for step in 0..=steps {
                 let t = f64::from(step) / f64::from(steps);
-                let Some(node) = lattice.nearest((piece.ends[0] + way * t).extend(0.0)) else { continue };
-                let own = (piece.radii[0] + (piece.radii[1] - piece.radii[0]) * t) * near.spread;
+                let Some(node) = lattice.nearest((piece.ends[0] + span * t).extend(0.0)) else { continue };
+                let own = (piece.radii[0] + (piece.radii[1] - piece.radii[0]) * t) * self.stroke.glow.near.spread;
                 let known = thickness.entry(node).or_insert_with(|| {
                     generators.push(node);
                     own
@@ -91,23 +133,12 @@ impl NearField {
                 *known = known.max(own);
             }
         }
-        let mean = mean_cost::<N>(near.weights).map_err(|e| Ok(e.to_string()))?;
-        let plan = plan(&lattice, &generators, Goal::Everything, progress).map_err(Err)?;
-        let range = lattice.weight_range();
-        let costs = plan.costs(lattice.nodes());
-        let nearest = plan.labels(lattice.nodes());
-        let mut values = vec![0.0_f32; lattice.cells()];
-        for (value, (cost, source)) in values.iter_mut().zip(costs.iter().zip(&nearest)) {
-            let (Some(cost), Some(source)) = (cost, source) else { continue };
-            let distance = range.real(*cost) / mean * spacing;
-            let over = distance / thickness[source].max(f64::MIN_POSITIVE);
-            *value = libm::exp(-over * over) as f32;
-        }
-        let origin: DVec3 = window.position([0; 3]);
-        Ok(Self { origin: origin.truncate(), spacing, size: [window.size[0], window.size[1]], values })
+        (generators, thickness)
     }
+}
 
-    /// V at a place in the scene, even between nodes.
+impl NearField {
+    /// V at a point of the scene, bilinearly interpolated.
     pub fn at(&self, p: DVec2) -> f32 {
         let at = (p - self.origin) / self.spacing;
         let clamp = |x: f64, size: u32| x.clamp(0.0, f64::from(size - 1) - 1e-9).max(0.0);
@@ -128,7 +159,7 @@ mod tests {
     use crate::math::Weights;
     use crate::model::{GlowSpec, NearGlow, Piece, ViewFrame, ViewSpec};
 
-    /// T is a length: at distance T from a straight stroke there is 1/e of its light, whatever the weights are.
+    /// T is a length: at distance T from a straight stroke V is 1/e, whatever the weights.
     #[test]
     fn t_is_in_pixels() {
         let size = [160, 160];
@@ -149,7 +180,15 @@ mod tests {
                     is_core: true,
                 }];
                 let stroke = Stroke { name: "s".to_owned(), pieces, glow: GlowSpec { near, ..GlowSpec::default() } };
-                let field = NearField::new(&stroke, true, &canvas, 1, 1 << 30, &Progress::default()).unwrap();
+                let progress = Progress::default();
+                let parameters = NearParameters {
+                    stroke: &stroke,
+                    canvas: &canvas,
+                    seed: 1,
+                    max_memory: 1 << 30,
+                    progress: &progress,
+                };
+                let field = parameters.field(true).unwrap();
                 let mean = |x: f64| {
                     let sum: f64 = (0..160).map(|y| f64::from(field.at(DVec2::new(x, f64::from(y))))).sum();
                     sum / 160.0

@@ -1,12 +1,12 @@
-//! The halo: the atmospheric point-spread function (Narasimhan and Nayar 2003, "Shedding light on the weather", as Kim
+//! The halo: the atmospheric point spread function (Narasimhan and Nayar 2003, "Shedding light on the weather", as Kim
 //! and Lin 2004 used it for lightning).
 
-/// Terms below this share of the first are left out.
+/// The series ends with the term below this share of the first.
 const NEGLIGIBLE: f64 = 1e-12;
-/// More terms than this are never needed for a thickness of 1.05 and above.
+/// Most terms, sufficient for an optical thickness of 1.05 and above.
 const MOST_TERMS: usize = 4096;
 
-/// Light of a point source as it arrives through air that scatters: `I(T, mu) = sum over m of (g_m + g_(m+1)) L_m(mu)`
+/// The angular distribution of a point source's light after multiple scattering: `I(T, mu) = sum over m of (g_m + g_(m+1)) L_m(mu)`
 /// with `g_m = exp(-beta_m T - alpha_m ln T)`, `alpha_m = m + 1`, `beta_m = (2m + 1) / m (1 - q^(m-1))`, `g_0 = 0`.
 #[derive(Clone, Debug)]
 pub struct Scattering {
@@ -15,7 +15,7 @@ pub struct Scattering {
 }
 
 impl Scattering {
-    /// For an optical thickness above 1 and forward scattering `q` from 0 to 1.
+    /// For an optical `thickness` T above 1 and a forward scattering parameter `q` from 0 to 1.
     #[must_use]
     pub fn new(thickness: f64, q: f64) -> Self {
         let mut g = vec![0.0];
@@ -36,7 +36,7 @@ impl Scattering {
         Self { terms }
     }
 
-    /// The light that arrives at an angle from the source whose cosine is `mu`, in units of its own.
+    /// The radiance at an angle with the cosine `mu` from the source, in arbitrary units.
     #[must_use]
     pub fn at(&self, mu: f64) -> f64 {
         // Legendre polynomials by Bonnet's recursion.
@@ -56,8 +56,7 @@ impl Scattering {
 mod tests {
     use super::*;
 
-    /// Against the published series in another way: its moments by numerical integration over Legendre polynomials that
-    /// are written out.
+    /// The Legendre moments of the published series, by numerical integration.
     #[test]
     fn has_the_published_moments() {
         let legendre: [fn(f64) -> f64; 4] =
@@ -86,7 +85,7 @@ mod tests {
         }
     }
 
-    /// It is not a blur: a sharp peak on a broad foot.
+    /// A sharp peak with wide tails, unlike a Gaussian.
     #[test]
     fn is_peaked_and_broad() {
         let scattering = Scattering::new(1.06, 0.9);

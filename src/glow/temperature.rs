@@ -1,9 +1,9 @@
-//! The colour of a hot body.
+//! The colour of a black body.
 
 /// Planck's second radiation constant, in nanometre kelvins.
 const C2: f64 = 1.438_776_877e7;
 
-/// Linear Rec. 709 colour of a body at so many kelvin, its luminance 1; what lies outside the gamut is cut off.
+/// The linear Rec. 709 colour, with luminance 1, of a black body at `kelvin`; negative components are clipped.
 ///
 /// Planck's law over the CIE 1931 observer, by the fit of Wyman, Sloan and Shirley (2013).
 #[must_use]

@@ -1,4 +1,4 @@
-//! Cost fields: structured values that vary the weights in space (Xu and Mould 2008, section 3, Figs 1 and 5).
+//! Cost fields: structured values that modulate the weights in space (Xu and Mould 2008, section 3, Figs 1 and 5).
 
 use std::sync::Arc;
 
@@ -7,36 +7,36 @@ use crate::geom::{Bounds, Shape, Strokes};
 use crate::math::{DVec3, power};
 use crate::raster::Grey;
 
-/// A value at every place, and how it changes the weights there.
+/// A scalar field, and how it modulates the weights.
 #[derive(Clone, Debug)]
 pub struct CostField {
-    /// What is measured.
+    /// The quantity measured.
     pub measure: Measure,
-    /// The measure is divided by this before it is raised to `power`: scene units for distances.
+    /// Divisor of the measure before `power` applies: scene units for distances.
     pub per: f64,
     /// Exponent of the measure.
     pub power: f64,
     /// Factor of the result.
     pub scale: f64,
-    /// Take 1 / (1 + measure) instead: dear near, cheap far.
+    /// Take 1 / (1 + measure) instead: costly near, cheap far.
     pub inverse: bool,
-    /// Multiply the random part instead of adding to it.
+    /// Multiply the random part of the weight instead of adding to it.
     pub multiply: bool,
 }
 
-/// What a field measures.
+/// The quantity that a field measures.
 #[derive(Clone, Debug)]
 pub enum Measure {
     /// Distance from the line through a point along a unit vector.
     Axis {
         /// A point of the line.
         through: DVec3,
-        /// Its direction, of length 1.
+        /// Its direction, a unit vector.
         along: DVec3,
     },
     /// Distance from a point.
     Point(DVec3),
-    /// Height within the bounds along axis `up`, from 0 at the cheap end to 1 at the dear one.
+    /// Relative height along axis `up`, from 0 at the cheap end to 1 at the costly one.
     Height {
         /// 1 in the plane, 2 in space.
         up: usize,
@@ -71,7 +71,7 @@ impl CostField {
         if let Measure::Shape(shape) = &mut self.measure { Some(shape) } else { None }
     }
 
-    /// The axes along which it can change.
+    /// The axes along which it may vary.
     #[must_use]
     pub fn varies(&self) -> [bool; 3] {
         match &self.measure {
@@ -104,7 +104,7 @@ impl CostField {
         self.scale * power(measure, self.power)
     }
 
-    /// What several fields make of a place together: sums are added, factors multiplied.
+    /// The combination of `fields` at `p`: the sum of the added ones, the product of the others.
     #[must_use]
     pub fn combine(fields: &[Self], p: DVec3) -> FieldValue {
         let none = FieldValue { sum: 0.0, factor: 1.0 };

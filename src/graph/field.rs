@@ -1,34 +1,34 @@
-//! Cost fields tabulated on a lattice, along the axes on which they vary and no others.
+//! Cost fields tabulated on a lattice, along those axes only on which they vary.
 
 use rayon::prelude::*;
 
-use super::Window;
 use super::weights::fixed;
+use super::window::Window;
 use crate::math::DVec3;
 
 /// Fractional bits of a factor.
 const FACTOR_FRACTION: u32 = 12;
-/// Factors are kept at or above this, so that no weight vanishes.
+/// Least factor, so that no weight vanishes.
 pub(super) const LEAST_FACTOR: f64 = 1.0 / 16.0;
 
-/// What cost fields make of a place: an edge weighs `R^alpha * factor + sum`, times its length.
+/// The combined cost fields at a point: an edge weighs `(R^alpha * factor + sum) * length`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldValue {
-    /// At least 0.
+    /// Sum of the added fields, at least 0.
     pub sum: f64,
-    /// Kept at 1/16 or above.
+    /// Product of the multiplying fields, clamped to 1/16 and above.
     pub factor: f64,
 }
 
-/// One [`FieldValue`] for each node, as integers; an edge takes the mean of its two ends.
+/// A [`FieldValue`] for each node in fixed point; an edge has the mean of its two ends.
 #[derive(Clone, Debug)]
 pub struct FieldTable {
-    /// How far apart the values of neighbours along x, y and z are; 0 where nothing changes.
+    /// Strides along x, y and z; 0 where the fields do not vary.
     pub(super) strides: [usize; 3],
     values: Vec<[u32; 2]>,
 }
 
-/// Values of a field before they are rounded to integers: their bounds set the fractional bits.
+/// Samples of cost fields before rounding to fixed point: their bounds determine the fractional bits.
 #[derive(Clone, Debug)]
 pub(super) struct FieldSamples {
     strides: [usize; 3],
@@ -36,7 +36,7 @@ pub(super) struct FieldSamples {
 }
 
 impl FieldSamples {
-    /// Evaluates `value` at every node of `window`; `varies` says along which axes it can change.
+    /// Evaluates `value` at the nodes of `window` along the axes on which it `varies`.
     pub fn new(window: &Window, varies: [bool; 3], value: impl Fn(DVec3) -> FieldValue + Sync) -> Self {
         let size = [0, 1, 2].map(|axis| if varies[axis] { window.size[axis] as usize } else { 1 });
         let strides = [1, size[0], size[0] * size[1]];
@@ -62,7 +62,7 @@ impl FieldSamples {
         })
     }
 
-    /// The table with `fraction` bits behind the point.
+    /// The table with `fraction` fractional bits.
     pub fn into_table(self, fraction: u32) -> FieldTable {
         FieldTable {
             strides: self.strides,
@@ -79,7 +79,7 @@ impl FieldTable {
         let ([sum_a, factor_a], [sum_b, factor_b]) = (self.values[a], self.values[b]);
         let factor = u64::from(factor_a) + u64::from(factor_b);
         let sum = u64::from(sum_a) + u64::from(sum_b);
-        // Halved, since both are sums over two ends.
+        // Halved: both are sums over the two ends.
         (((u64::from(random) * factor) >> (FACTOR_FRACTION + 1)) + ((sum * length) >> 13)) as u32
     }
 }

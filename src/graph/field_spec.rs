@@ -25,7 +25,7 @@ pub struct FieldSpec {
     #[serde(default = "one")]
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub per: f64,
-    /// Take `1 / (1 + measure)` instead: dear near, cheap far.
+    /// Take `1 / (1 + measure)` instead: costly near, cheap far.
     #[serde(default)]
     pub inverse: bool,
     /// Add to the random part, or multiply it (by 1/16 at the least).
@@ -70,7 +70,7 @@ pub enum MeasureSpec {
     },
     /// Distance from a shape; 0 inside.
     Shape(ShapeSpec),
-    /// Brightness of a greyscale picture (PNG or JPEG, white is dear), stretched over the space's shape; in space it
+    /// Brightness of a greyscale picture (PNG or JPEG, white is costly), stretched over the space's shape; in space it
     /// stands upright and is extruded along y.
     Map {
         /// The picture, relative to the scene file.

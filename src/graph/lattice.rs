@@ -2,112 +2,18 @@
 
 use super::field::{FieldSamples, LEAST_FACTOR};
 use super::weights::{fixed, length};
-use super::{Edge, FieldTable, FieldValue, Graph, Mask, Node, WeightError, WeightRange, WeightTable};
+use super::{Edge, FieldTable, FieldValue, Graph, LatticeError, Mask, Node, WeightRange, WeightTable, Window};
 use crate::geom::Neighbours;
 use crate::math::{DVec3, Stream, Weights, mix};
 
-/// Odd multipliers that tell coordinates apart in an edge's key: fractional parts of the square roots of 2, 3, 5.
+/// Odd multipliers of the coordinates in an edge's key: fractional parts of the square roots of 2, 3, 5.
 const AXIS_KEYS: [u64; 3] = [0x6a09_e667_f3bc_c909, 0xbb67_ae85_84ca_a73b, 0x3c6e_f372_fe94_f82b];
 
-/// In space, fronts of lattices with this many nodes are worth sharing among threads (benches/README.md).
+/// Least number of nodes, in space, at which threads share a front (`benches/README.md`).
 const WIDE: usize = 3_000_000;
 
 /// Layers of a slab ([`Graph::slab`]).
 const SLAB: u32 = 32;
-
-/// The part of the infinite lattice (all multiples of the spacing) that is used.
-///
-/// Nodes keep their identity, and edges their weights, when the window moves or grows.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Window {
-    /// Distance between neighbours along an axis, in scene units.
-    pub spacing: f64,
-    /// Lattice coordinates of the lowest corner.
-    pub origin: [i32; 3],
-    /// Nodes along each axis; 1 along z for a plane lattice.
-    pub size: [u32; 3],
-}
-
-/// Why a lattice cannot be made.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum LatticeError {
-    /// Coordinates do not fit.
-    #[error(
-        "a lattice of {} x {} x {} nodes is too large: its coordinates need {bits} bits of 32; use a wider spacing or a smaller shape",
-        size[0], size[1], size[2]
-    )]
-    TooLarge {
-        /// Nodes along each axis.
-        size: [f64; 3],
-        /// Bits that they need.
-        bits: u32,
-    },
-    /// No node lies in the shape.
-    #[error("no lattice node lies in the shape: use a smaller spacing or a larger shape")]
-    Empty,
-    /// The weights are out of range.
-    #[error(transparent)]
-    Weights(#[from] WeightError),
-}
-
-impl Window {
-    /// The nodes with `min <= position <= max`, in two dimensions (z is 0) or three.
-    ///
-    /// # Errors
-    /// [`LatticeError::TooLarge`] or [`LatticeError::Empty`].
-    pub fn new(min: DVec3, max: DVec3, spacing: f64, dimensions: u32) -> Result<Self, LatticeError> {
-        // A node on the border may be off it by rounding.
-        let slack = 1e-6;
-        let low = (min / spacing - DVec3::splat(slack)).to_array().map(libm::ceil);
-        let high = (max / spacing + DVec3::splat(slack)).to_array().map(libm::floor);
-        let mut size = [1.0_f64; 3];
-        for axis in 0..dimensions as usize {
-            size[axis] = high[axis] - low[axis] + 1.0;
-        }
-        if !size.iter().all(|&s| s >= 1.0) {
-            return Err(LatticeError::Empty);
-        }
-        let bits = size.map(|s| libm::ceil(libm::log2(s.max(1.0))) as u32).iter().sum();
-        let far = low.iter().chain(&high).any(|c| c.abs() > f64::from(i32::MAX / 2));
-        if bits > 32 || far {
-            return Err(LatticeError::TooLarge { size, bits });
-        }
-        let mut origin = low.map(|c| c as i32);
-        if dimensions == 2 {
-            origin[2] = 0;
-        }
-        Ok(Self { spacing, origin, size: size.map(|s| s as u32) })
-    }
-
-    /// How many nodes the window holds.
-    #[must_use]
-    pub fn nodes(&self) -> u64 {
-        self.size.iter().map(|&s| u64::from(s)).product()
-    }
-
-    /// Where the node with coordinates `at` within the window is, in scene units.
-    #[must_use]
-    pub fn position(&self, at: [u32; 3]) -> DVec3 {
-        let [x, y, z] = [0, 1, 2].map(|axis| (f64::from(self.origin[axis]) + f64::from(at[axis])) * self.spacing);
-        DVec3::new(x, y, z)
-    }
-
-    /// Coordinates within the window of the node nearest to `position`, or `None` if it is outside by more than half
-    /// a step.
-    #[must_use]
-    pub fn nearest(&self, position: DVec3) -> Option<[u32; 3]> {
-        let position = position.to_array();
-        let mut at = [0; 3];
-        for axis in 0..3 {
-            let c = libm::round(position[axis] / self.spacing) - f64::from(self.origin[axis]);
-            if !(c >= 0.0 && c < f64::from(self.size[axis])) {
-                return None;
-            }
-            at[axis] = c as u32;
-        }
-        Some(at)
-    }
-}
 
 /// A lattice with `N` neighbours a node: 4 or 8 in the plane, 6, 18 or 26 in space ([`Neighbours`]).
 ///
@@ -145,7 +51,7 @@ impl<const N: usize> Lattice<N> {
         class
     };
 
-    /// A lattice whose random weights come from `stream`. `field`, if any, says along which axes it varies and its
+    /// A lattice whose random weights are functions of the key of `stream`. `field` is the axes along which it varies and its
     /// value at a position; `mask` has one bit a cell ([`Graph::cell`]).
     ///
     /// # Errors
@@ -195,8 +101,8 @@ impl<const N: usize> Lattice<N> {
             lattice.node_step[slot] = dot(step, unit) as u32;
             lattice.field_step[slot] = lattice.field.as_ref().map_or(0, |f| dot(step, f.strides));
             lattice.length[slot] = u64::from(fixed(length(Self::CLASS[slot]), 12));
-            // The key of an edge belongs to its lower node and positive direction, which has an identity of its own,
-            // the same in every neighbourhood; a negative slot starts from the upper node.
+            // An edge's key is that of its lower node and positive direction, and independent of `N`; a negative slot starts
+            // from the upper node.
             let [x, y, z] = Self::STEPS[slot & !1];
             let axis = mix((x + 1 + 3 * (y + 1) + 9 * (z + 1)) as u64);
             let to_lower = if slot % 2 == 0 { 0 } else { coordinate_key(step) };
@@ -215,7 +121,7 @@ impl<const N: usize> Lattice<N> {
         Self::new(window, stream, weights, None::<([bool; 3], fn(DVec3) -> FieldValue)>, None)
     }
 
-    /// Bounds that hold for every edge, integer rounding included.
+    /// Bounds of all weights, rounding included.
     fn bounds(&self, classes: usize, low: FieldValue, high: FieldValue) -> WeightRange {
         let (least, most) = self.table.bounds(classes);
         let fraction = self.table.fraction();
@@ -251,8 +157,7 @@ impl<const N: usize> Lattice<N> {
         self.is_open(node).then_some(node)
     }
 
-    /// [`Lattice::nearest`], also for a place that is off the window by less than a step, as those at the border of a
-    /// shape may be.
+    /// [`Lattice::nearest`], also for a position outside the window by less than a step, as on the border of a shape.
     #[must_use]
     pub fn nearest_within(&self, position: DVec3) -> Option<Node> {
         self.nearest(position).or_else(|| {
@@ -263,13 +168,13 @@ impl<const N: usize> Lattice<N> {
         })
     }
 
-    /// May paths enter `node`?
+    /// Is `node` not masked?
     #[must_use]
     pub fn is_open(&self, node: Node) -> bool {
         self.mask.as_ref().is_none_or(|mask| !mask.is_blocked(self.cell(node)))
     }
 
-    /// Where `node` is, in scene units.
+    /// The position of `node`, in scene units.
     #[must_use]
     pub fn position(&self, node: Node) -> DVec3 {
         self.window.position(self.unpack(node))
@@ -281,7 +186,7 @@ impl<const N: usize> Lattice<N> {
         &Self::STEPS
     }
 
-    /// Every node that is open, in the order of cells.
+    /// The open nodes in the order of cells.
     pub fn nodes(&self) -> impl Iterator<Item = Node> + '_ {
         let [x, y, z] = self.window.size;
         (0..z)
@@ -295,7 +200,7 @@ impl<const N: usize> Lattice<N> {
         Self::PLANE
     }
 
-    /// How many edges join open nodes, each counted once.
+    /// The number of undirected edges between open nodes.
     #[must_use]
     pub fn count_edges(&self) -> u64 {
         if self.mask.is_none() {
@@ -314,7 +219,7 @@ impl<const N: usize> Lattice<N> {
         ends / 2
     }
 
-    /// How many nodes are open.
+    /// The number of open nodes.
     #[must_use]
     pub fn open_nodes(&self) -> u64 {
         self.mask.as_ref().map_or_else(|| self.window.nodes(), |m| m.open() as u64)
@@ -346,7 +251,7 @@ impl<const N: usize> Lattice<N> {
     #[inline(always)]
     fn is_interior(&self, at: [u32; 3]) -> bool {
         let inside = |axis: usize| at[axis].wrapping_sub(1) < self.window.size[axis].wrapping_sub(2);
-        // A window one node wide wraps to a large bound, so ask for width as well.
+        // The bound wraps where the window is one node wide, so its width is tested as well.
         let wide = |axis: usize| self.window.size[axis] > 2;
         inside(0) && inside(1) && wide(0) && wide(1) && (Self::PLANE || (inside(2) && wide(2)))
     }
@@ -356,7 +261,7 @@ impl<const N: usize> Lattice<N> {
         (0..3).all(|axis| at[axis].wrapping_add_signed(Self::STEPS[slot][axis]) < self.window.size[axis])
     }
 
-    /// Part of the key of every edge at this node.
+    /// The node's part of the keys of its edges.
     #[inline(always)]
     fn node_key(&self, [x, y, z]: [u32; 3]) -> u64 {
         let key = self
@@ -391,17 +296,17 @@ impl<const N: usize> Lattice<N> {
     }
 }
 
-/// The key of lattice coordinates or of a step between them.
+/// The key of lattice coordinates or of a difference of them.
 fn coordinate_key(at: [i32; 3]) -> u64 {
     at.iter().zip(AXIS_KEYS).fold(0, |sum: u64, (&c, key)| sum.wrapping_add((i64::from(c) as u64).wrapping_mul(key)))
 }
 
-/// How far a step goes in an array with these strides; wraps for negative steps.
+/// The offset of a step in an array with these strides; wraps for negative steps.
 fn dot(step: [i32; 3], strides: [usize; 3]) -> usize {
     step.iter().zip(strides).fold(0, |sum, (&d, stride)| sum.wrapping_add((d as isize as usize).wrapping_mul(stride)))
 }
 
-/// A hash whose top bits depend on all bits of the key: two rounds of xor-shift and multiply.
+/// A multiplicative hash: its top bits depend on all bits of the key.
 #[inline(always)]
 fn scramble(key: u64) -> u64 {
     (key ^ (key >> 32)).wrapping_mul(0xd6e8_feb8_6659_fd93)
@@ -456,7 +361,7 @@ impl<const N: usize> Graph for Lattice<N> {
 
     #[inline(always)]
     fn ahead(&self, cell: usize, mut visit: impl FnMut(usize)) {
-        // Along x the neighbours share the node's own cache line, so one visit for each other row will do.
+        // Neighbours along x share the node's cache line, so one visit for each other row suffices.
         for slot in 0..N {
             if Self::STEPS[slot][0] == 0 {
                 visit(cell.wrapping_add(self.cell_step[slot]));

@@ -1,4 +1,4 @@
-//! Which nodes of a graph are forbidden: one bit a node.
+//! The forbidden nodes of a graph, as a bit set.
 
 /// A set of cells that no path enters.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -29,7 +29,7 @@ impl Mask {
         self.words[cell / 64] >> (cell % 64) & 1 == 1
     }
 
-    /// How many cells stay open.
+    /// The number of cells that are not forbidden.
     #[must_use]
     pub fn open(&self) -> usize {
         self.cells - self.blocked

@@ -1,40 +1,39 @@
-//! Poisson-disc nodes: no two nearer than the spacing, and no room for another.
+//! Maximal Poisson-disc sampling: no two nodes nearer than the spacing, and no room for another.
 //!
-//! Space is cut into cells so small that each holds one node at most (Bridson 2007). Cells are visited once, in random
-//! order: darts are thrown into a cell, and where they miss it is cut up and searched until a place is found or all of
-//! it is known to be taken or outside (after Ebeida et al. 2012). A cell so visited never has room again.
+//! A grid has cells so small that each contains at most one node (Bridson 2007). Cells are visited once, in random order: a
+//! dart is thrown into the cell; on a miss it is subdivided until a free point is found or every piece is covered by discs or
+//! outside the region (after Ebeida et al. 2012). A visited cell has no room left.
 
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x8};
 use rand::RngExt;
 use rayon::prelude::*;
 
-use super::scatter::MOST_NODES;
-use super::{ScatterError, scatter_estimate};
+use super::scatter_size::{MOST_NODES, ScatterError, scatter_estimate};
 use crate::math::{DVec3, Stream, mix};
 
-/// Cells along a side of a block. Blocks are filled one after the other or, those that do not touch, side by side.
+/// Cells along the side of a block, the unit of parallel work: blocks that do not touch are filled concurrently.
 const BLOCK: i32 = 16;
-/// Cells around a block in which nodes matter to it: a cell is 1 / sqrt 3 (in the plane 1 / sqrt 2) of the spacing.
+/// Cells around a block whose nodes affect it: the side of a cell is 1 / sqrt 3 (in the plane 1 / sqrt 2) of the spacing.
 const HALO: i32 = 2;
-/// Pieces of a cell down to this depth are judged in single precision, with this share to spare.
+/// Pieces of a cell up to this depth are tested in single precision, with this relative tolerance.
 const COARSE: (u32, f64) = (6, 1e-5);
-/// A cell is cut in halves at most this often: what is then left is a millionth of a spacing wide.
+/// Greatest depth of subdivision: such a piece is a millionth of a spacing wide.
 const DEEPEST: u32 = 20;
-/// The last of the nodes to be visited: no cell needs more pieces, but degenerate shapes might.
+/// Most pieces visited in a cell; only degenerate regions might need more.
 const MOST_PIECES: u32 = 20_000;
 
-/// Where nodes may be.
+/// The region that is sampled.
 pub trait Region: Sync {
-    /// A number of the sign of the distance from the region, negative inside, nowhere larger than that.
+    /// A conservative signed distance bound: negative inside, its magnitude at most the true distance.
     fn margin(&self, p: DVec3) -> f64;
 
-    /// The corners of a box around it.
+    /// The least and the greatest corner of a bounding box.
     fn bounds(&self) -> [DVec3; 2];
 }
 
-/// Cells in the box around a region.
+/// The grid over the bounding box of a region.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cells {
+pub(super) struct CellGrid {
     origin: DVec3,
     /// Side of a cell.
     side: f64,
@@ -42,9 +41,9 @@ pub(super) struct Cells {
     is_plane: bool,
 }
 
-impl Cells {
+impl CellGrid {
     pub fn new(bounds: [DVec3; 2], spacing: f64, is_plane: bool) -> Self {
-        // A hair less, so that two nodes in opposite corners are too near for rounding to part them.
+        // Slightly less, so that rounding cannot put two nodes into one cell.
         let side = spacing * (1.0 - 1e-9) / libm::sqrt(if is_plane { 2.0 } else { 3.0 });
         let extent = (bounds[1] - bounds[0]) / side;
         let mut size = extent.to_array().map(|e| (libm::floor(e) as i32).saturating_add(1).max(1));
@@ -55,7 +54,7 @@ impl Cells {
         Self { origin, side, size, is_plane }
     }
 
-    /// How many there are.
+    /// The number of cells.
     pub fn count(&self) -> u64 {
         self.size.iter().map(|&s| s as u64).product()
     }
@@ -71,16 +70,16 @@ impl Cells {
     }
 }
 
-/// Nodes in `region`, `spacing` apart and with no room for another: first those of `fixed` that are not nearer than that
-/// to one before (they may lie anywhere in the box), then random ones from `stream`.
+/// A maximal Poisson-disc sample of `region`: first those of `fixed` (anywhere in the bounding box) that are no nearer than
+/// the spacing to an earlier one, then random points from `stream`.
 pub(super) fn poisson(
     region: &dyn Region,
-    cells: &Cells,
+    cells: &CellGrid,
     spacing: f64,
     fixed: &[DVec3],
     stream: &Stream,
 ) -> Vec<DVec3> {
-    // What is in each cell: the number of a node plus one.
+    // The number of the node in each cell plus 1, 0 for none.
     let mut held = vec![0_u32; cells.count() as usize];
     let mut nodes: Vec<DVec3> = Vec::new();
     for &p in fixed {
@@ -98,13 +97,13 @@ pub(super) fn poisson(
     }
     let level = Level::new();
     let blocks = cells.size.map(|s| (s + BLOCK - 1) / BLOCK);
-    // Blocks of equal parity do not touch: eight phases.
+    // Blocks of equal parity do not touch, so there are eight parallel phases.
     for phase in 0..8 {
         let every = |axis: usize| (0..blocks[axis]).filter(move |b| b & 1 == phase >> axis & 1);
         let places: Vec<[i32; 3]> =
             every(2).flat_map(|z| every(1).flat_map(move |y| every(0).map(move |x| [x, y, z]))).collect();
         let fill = |&place: &[i32; 3]| {
-            let block = Block::new(cells, spacing, place, &held, &nodes);
+            let block = CellBlock::new(cells, spacing, place, &held, &nodes);
             dispatch!(level, simd => block.fill(simd, region, stream))
         };
         let found: Vec<Vec<DVec3>> =
@@ -119,7 +118,7 @@ pub(super) fn poisson(
     nodes
 }
 
-/// Nodes alone, in the plane or in space: `spacing` apart and with no room for another.
+/// A maximal Poisson-disc sample of `region`, in the plane or in space.
 ///
 /// # Errors
 /// [`ScatterError::TooMany`].
@@ -133,12 +132,12 @@ pub fn poisson_points(
     if estimate.is_nan() || estimate > MOST_NODES {
         return Err(ScatterError::TooMany(estimate));
     }
-    Ok(poisson(region, &Cells::new(region.bounds(), spacing, is_plane), spacing, &[], stream))
+    Ok(poisson(region, &CellGrid::new(region.bounds(), spacing, is_plane), spacing, &[], stream))
 }
 
-/// A block of cells, and what is around it.
-struct Block<'a> {
-    cells: &'a Cells,
+/// A block of cells with its halo.
+struct CellBlock<'a> {
+    cells: &'a CellGrid,
     /// The spacing squared.
     apart: f64,
     /// The lowest cell, halo excluded.
@@ -147,39 +146,40 @@ struct Block<'a> {
     size: [i32; 3],
     /// Cells in a row and in a layer, halo included.
     strides: [usize; 2],
+    /// The number of the node in each cell plus 1, 0 for none.
     held: Vec<u32>,
-    /// For each row of cells, which hold a node, and which are known to have no room.
+    /// For each row of cells, bits of those that contain a node, and of those known to have no room.
     rows: Vec<[u32; 2]>,
     nodes: Vec<DVec3>,
-    /// Where the new nodes begin.
+    /// The index of the first new node.
     first: usize,
-    /// Pieces that wait to be searched.
-    waiting: Vec<Piece>,
+    /// The stack of the search.
+    stack: Vec<CellPiece>,
 }
 
-/// The nodes that leave room in a cell or not, those nearest to its middle first.
+/// The nodes whose discs overlap a cell, in order of distance from its centre.
 #[derive(Default)]
-struct Near {
-    /// Where they are.
+struct NearDiscs {
+    /// Their positions.
     nodes: Vec<DVec3>,
-    /// The same from the cell's middle, eight at a time; what is missing is far away.
+    /// Positions relative to the cell's centre, eight at a time; unused lanes are far away.
     lanes: Vec<[[f32; 8]; 3]>,
-    /// The cell's middle.
+    /// The cell's centre.
     middle: DVec3,
 }
 
-/// A place in a cell that is being searched.
+/// A piece of a subdivided cell.
 #[derive(Clone, Copy)]
-struct Piece {
+struct CellPiece {
     low: DVec3,
     side: f64,
     depth: u32,
-    /// Is all of it in the region?
+    /// Is all of it inside the region?
     is_inside: bool,
 }
 
-impl<'a> Block<'a> {
-    fn new(cells: &'a Cells, spacing: f64, place: [i32; 3], held: &[u32], nodes: &[DVec3]) -> Self {
+impl<'a> CellBlock<'a> {
+    fn new(cells: &'a CellGrid, spacing: f64, place: [i32; 3], held: &[u32], nodes: &[DVec3]) -> Self {
         let low = place.map(|b| b * BLOCK);
         let size = [0, 1, 2].map(|axis| BLOCK.min(cells.size[axis] - low[axis]));
         let width = size.map(|s| (s + 2 * HALO) as usize);
@@ -193,7 +193,7 @@ impl<'a> Block<'a> {
             rows: vec![[0; 2]; width[1] * width[2]],
             nodes: Vec::new(),
             first: 0,
-            waiting: Vec::new(),
+            stack: Vec::new(),
         };
         let range = |axis: usize| (low[axis] - HALO).max(0)..(low[axis] + size[axis] + HALO).min(cells.size[axis]);
         for z in range(2) {
@@ -211,7 +211,7 @@ impl<'a> Block<'a> {
         own
     }
 
-    /// Puts a node into the cell `at`, and marks the cells around it that it leaves no room in.
+    /// Puts a node into the cell `at`, and marks the cells that its disc covers.
     fn put(&mut self, at: [i32; 3], p: DVec3) {
         self.nodes.push(p);
         let index = self.index(at);
@@ -220,7 +220,7 @@ impl<'a> Block<'a> {
         self.rows[row][0] |= 1 << (at[0] + HALO);
         let side = self.cells.side;
         let own = self.low_corner([0, 1, 2].map(|axis| at[axis] + self.low[axis]));
-        // How far the far side of the cell before, of this and of the next is, squared, along each axis.
+        // Squared distance, along each axis, of the far side of the previous, this and the next cell.
         let far = [0, 1, 2].map(|axis| {
             let d = p[axis] - own[axis];
             [d + side, d.max(side - d), 2.0 * side - d].map(|far| far * far)
@@ -244,17 +244,17 @@ impl<'a> Block<'a> {
         }
     }
 
-    /// The index of a cell, counted from the block's lowest.
+    /// The index of a cell with coordinates relative to the block's lowest.
     fn index(&self, [x, y, z]: [i32; 3]) -> usize {
         (x + HALO) as usize + self.strides[0] * (y + HALO) as usize + self.strides[1] * (z + HALO) as usize
     }
 
-    /// Visits every cell, and returns the nodes found.
+    /// Visits every cell in random order, and returns the new nodes.
     #[inline(always)]
     fn fill<S: Simd>(mut self, simd: S, region: &dyn Region, stream: &Stream) -> Vec<DVec3> {
         let half = self.half_diagonal(self.cells.side);
         let mut order: Vec<(u64, [i16; 3], bool)> = Vec::new();
-        // Two by two cells at a time: most are inside or outside together.
+        // 2 x 2 (x 2) cells at a time: most are inside or outside together.
         let deep = if self.cells.is_plane { 1 } else { 2 };
         for z in (0..self.size[2]).step_by(deep) {
             for y in (0..self.size[1]).step_by(2) {
@@ -280,7 +280,7 @@ impl<'a> Block<'a> {
             }
         }
         order.sort_unstable_by_key(|&(key, at, _)| (key, at));
-        let mut near = Near::default();
+        let mut near = NearDiscs::default();
         for (key, at, is_inside) in order {
             let at = at.map(i32::from);
             if !self.has_room(at) {
@@ -288,7 +288,7 @@ impl<'a> Block<'a> {
             }
             self.gather(at, &mut near);
             let low = self.low_corner([at[0] + self.low[0], at[1] + self.low[1], at[2] + self.low[2]]);
-            let piece = Piece { low, side: self.cells.side, depth: 0, is_inside };
+            let piece = CellPiece { low, side: self.cells.side, depth: 0, is_inside };
             if let Some(p) = self.search(simd, region, &near, piece, stream.nth(key)) {
                 self.put(at, p);
             }
@@ -296,13 +296,13 @@ impl<'a> Block<'a> {
         self.nodes.split_off(self.first)
     }
 
-    /// Half the diagonal of a cube (in the plane, a square) of this side, or a hair more.
+    /// Half the diagonal of a cube (in the plane, a square) of this side, rounded up.
     fn half_diagonal(&self, side: f64) -> f64 {
         let diagonal = libm::sqrt(if self.cells.is_plane { 2.0 } else { 3.0 });
         side * diagonal * (0.5 + 1e-6)
     }
 
-    /// Is the cell not known to be taken?
+    /// May there be room in the cell?
     fn has_room(&self, at: [i32; 3]) -> bool {
         self.rows[self.index(at) / self.strides[0]][1] >> (at[0] + HALO) & 1 == 0
     }
@@ -321,9 +321,8 @@ impl<'a> Block<'a> {
         if self.cells.is_plane { middle.with_z(0.0) } else { middle }
     }
 
-    /// The nodes that are too near to something in the cell `at`, those nearest to its middle first: they are the likeliest
-    /// to leave no room in a piece of it.
-    fn gather(&self, at: [i32; 3], near: &mut Near) {
+    /// Collects the nodes whose discs overlap the cell `at`, nearest to its centre first: those most often cover a piece.
+    fn gather(&self, at: [i32; 3], near: &mut NearDiscs) {
         near.nodes.clear();
         let half = self.cells.side * 0.5;
         let middle = self.middle([0, 1, 2].map(|axis| at[axis] + self.low[axis]));
@@ -331,7 +330,7 @@ impl<'a> Block<'a> {
         for dz in -deep..=deep {
             for dy in -HALO..=HALO {
                 let row = self.index([-HALO, at[1] + dy, at[2] + dz]);
-                // Five cells of the row, from the one two before.
+                // Five cells of the row, starting two cells before.
                 let mut held = self.rows[row / self.strides[0]][0] >> at[0] & 0b11111;
                 while held != 0 {
                     let cell = row + at[0] as usize + held.trailing_zeros() as usize;
@@ -358,18 +357,18 @@ impl<'a> Block<'a> {
         }
     }
 
-    /// A place in `whole` that is in the region and has room, if there is one.
+    /// A free point of the region in `whole`, if there is one.
     #[inline(always)]
     fn search<S: Simd>(
         &mut self,
         simd: S,
         region: &dyn Region,
-        near: &Near,
-        whole: Piece,
+        near: &NearDiscs,
+        whole: CellPiece,
         mut random: Stream,
     ) -> Option<DVec3> {
         let (apart, is_plane) = (self.apart, self.cells.is_plane);
-        let dart = |piece: &Piece, random: &mut Stream| {
+        let dart = |piece: &CellPiece, random: &mut Stream| {
             let [u, v, w]: [f64; 3] = std::array::from_fn(|_| random.random());
             let p = piece.low + DVec3::new(u, v, w) * piece.side;
             let p = if is_plane { p.with_z(0.0) } else { p };
@@ -382,10 +381,10 @@ impl<'a> Block<'a> {
         if let Some(p) = dart(&whole, &mut random) {
             return Some(p);
         }
-        self.waiting.clear();
-        self.waiting.push(whole);
+        self.stack.clear();
+        self.stack.push(whole);
         let mut pieces = 0;
-        while let Some(piece) = self.waiting.pop() {
+        while let Some(piece) = self.stack.pop() {
             pieces += 1;
             if piece.depth == DEEPEST || pieces > MOST_PIECES {
                 continue;
@@ -397,7 +396,7 @@ impl<'a> Block<'a> {
             for i in 0..children {
                 let child = i ^ turn;
                 let corner = DVec3::new((child & 1) as f64, (child >> 1 & 1) as f64, (child >> 2) as f64);
-                let mut part = Piece { low: piece.low + corner * side, side, depth: piece.depth + 1, ..piece };
+                let mut part = CellPiece { low: piece.low + corner * side, side, depth: piece.depth + 1, ..piece };
                 if self.is_taken(simd, near, &part) {
                     continue;
                 }
@@ -411,20 +410,20 @@ impl<'a> Block<'a> {
                 if let Some(p) = dart(&part, &mut random) {
                     return Some(p);
                 }
-                self.waiting.push(part);
+                self.stack.push(part);
             }
         }
         None
     }
 
-    /// Is all of `piece` too near to one of the nodes?
+    /// Is `piece` covered by the disc of one node?
     #[inline(always)]
-    fn is_taken<S: Simd>(&self, simd: S, near: &Near, piece: &Piece) -> bool {
+    fn is_taken<S: Simd>(&self, simd: S, near: &NearDiscs, piece: &CellPiece) -> bool {
         let half = piece.side * 0.5;
         let middle = self.middle_of(piece.low, piece.side);
         let deep = if self.cells.is_plane { 0.0 } else { half };
         if piece.depth <= COARSE.0 {
-            // Loops alone: closures would not be compiled for the instruction set.
+            // Loops only: closures would not be compiled for the instruction set.
             let at = middle - near.middle;
             let limit = f32x8::splat(simd, (self.apart * (1.0 - COARSE.1)) as f32);
             for lanes in &near.lanes {

@@ -2,31 +2,24 @@
 
 use std::ops::Range;
 
-use super::joined::Neighbourhood;
-use super::poisson::{Cells, poisson};
-use super::{CostField, FieldValue, Node, Region, Sectors, WeightTable};
+use super::poisson::{CellGrid, poisson};
+use super::scatter_size::MOST_NODES;
+use super::yao::NodeGrid;
+use super::{CostField, FieldValue, Node, Region, ScatterError, Sectors, WeightTable, scatter_estimate};
 use crate::math::{DVec3, Stream, mix};
 
-/// Side of a cell of the neighbourhood, in spacings: two rings of such cells hold nearly every neighbour.
+/// Side of a grid cell, in spacings: two rings of cells contain nearly every Yao neighbour.
 const CELL: f64 = 1.3;
-/// Nodes for each cubic spacing of volume, about, where there is no room for another; and for each square one.
-const DENSITY: [f64; 2] = [0.75, 0.8];
-/// Bytes that a node takes at the peak of building its graph, cells and edges included.
-const NODE_BYTES: u64 = 420;
-
-/// More nodes than this, by their estimate, are refused: there are fewer cells than a u32 can count.
-pub(super) const MOST_NODES: f64 = 1e8;
-
-/// How scattered nodes are joined.
+/// Which scattered nodes are joined by edges.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Joining {
-    /// Each to the nearest in every sector around it.
+    /// The Yao graph: each node with the nearest in every sector around it.
     Yao(Sectors),
-    /// All that are no farther apart than this, in scene units.
+    /// The geometric graph: all pairs within this distance, in scene units.
     Radius(f64),
 }
 
-/// What a scattered graph is made of, its region apart.
+/// The parameters of a scattered graph but for its region.
 #[derive(Clone, Copy)]
 pub struct ScatterPlan<'a> {
     /// Least distance between nodes, in scene units.
@@ -35,26 +28,26 @@ pub struct ScatterPlan<'a> {
     pub is_plane: bool,
     /// Which nodes are joined.
     pub joining: &'a Joining,
-    /// Places that are nodes, as far as they are not too near to each other.
+    /// Positions of nodes to be included, but for those nearer than the spacing to an earlier one.
     pub fixed: &'a [DVec3],
-    /// The owner of a place, where nodes of two owners are not to be joined; 0 joins all.
+    /// The owner of a position: nodes of two different owners are not joined, unless one is 0.
     pub owner: Option<&'a (dyn Fn(DVec3) -> u8 + Sync)>,
 }
 
-/// A scattered graph. Its edges are stored, both ways; their weights are made apart ([`Scatter::weigh`]), so that many may
-/// share the nodes.
+/// A scattered graph, as adjacency lists of directed edges. Weights are separate ([`Scatter::weigh`]), so that many sets of
+/// weights can share the nodes.
 #[derive(Clone, Debug, Default)]
 pub struct Scatter {
     positions: Vec<DVec3>,
     owners: Vec<u8>,
-    /// Where the edges of each node start.
+    /// The index of each node's first edge.
     starts: Vec<u32>,
-    /// Other ends.
+    /// The other end of each edge.
     ends: Vec<Node>,
     spacing: f64,
 }
 
-/// A weight for each edge of a scattered graph, in the order of [`Scatter::edges`].
+/// The weight of each edge of a scattered graph, in the order of [`Scatter::edges`].
 #[derive(Clone, Debug, Default)]
 pub struct EdgeWeights {
     weights: Vec<u32>,
@@ -68,47 +61,15 @@ impl EdgeWeights {
         cost as f64 / f64::from(1_u32 << self.fraction)
     }
 
-    /// Those of the edges in `range`.
+    /// The weights of the edges in `range`.
     #[must_use]
     pub fn of(&self, range: Range<usize>) -> &[u32] {
         &self.weights[range]
     }
 }
 
-/// Why nodes cannot be scattered.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ScatterError {
-    /// No node lies in the region.
-    #[error("no node fits in the shape: is it empty, or all of it forbidden?")]
-    Empty,
-    /// Too many for their numbers.
-    #[error("about {0:.1e} nodes are too many (1e8 at most): use a wider spacing or a smaller shape")]
-    TooMany(f64),
-    /// Too many or no clusters.
-    #[error("`inside` holds {found} clusters that far apart, where 1 to {most} are possible: change `apart`")]
-    Clusters {
-        /// How many there would be.
-        found: usize,
-        /// How many there can be.
-        most: usize,
-    },
-}
-
-/// About how many nodes `spacing` apart the box with these corners holds.
-#[must_use]
-pub fn scatter_estimate(bounds: [DVec3; 2], spacing: f64, is_plane: bool) -> f64 {
-    let extent = ((bounds[1] - bounds[0]) / spacing).max(DVec3::splat(-1.0)) + 1.0;
-    if is_plane { extent.x * extent.y * DENSITY[1] } else { extent.x * extent.y * extent.z * DENSITY[0] }
-}
-
-/// Bytes that scattering so many nodes takes at its peak.
-#[must_use]
-pub fn scatter_bytes(nodes: f64) -> u64 {
-    (nodes as u64).saturating_mul(NODE_BYTES)
-}
-
 impl Scatter {
-    /// Scatters nodes in `region`, at random by `stream`, and joins them.
+    /// A Poisson-disc sample of `region` with random numbers from `stream`, and its edges.
     ///
     /// # Errors
     /// [`ScatterError::Empty`], [`ScatterError::TooMany`].
@@ -118,7 +79,7 @@ impl Scatter {
         if estimate.is_nan() || estimate > MOST_NODES {
             return Err(ScatterError::TooMany(estimate));
         }
-        let cells = Cells::new(bounds, plan.spacing, plan.is_plane);
+        let cells = CellGrid::new(bounds, plan.spacing, plan.is_plane);
         let positions = poisson(region, &cells, plan.spacing, plan.fixed, stream);
         if positions.is_empty() {
             return Err(ScatterError::Empty);
@@ -127,21 +88,21 @@ impl Scatter {
         let owned = (!owners.is_empty()).then_some(&owners[..]);
         let (starts, ends) = match plan.joining {
             Joining::Yao(sectors) => {
-                let near = Neighbourhood::new(&positions, owned, plan.spacing * CELL).yao(sectors);
+                let near = NodeGrid::new(&positions, owned, plan.spacing * CELL).yao(sectors);
                 both_ways(positions.len(), |i| {
                     near[i * sectors.count()..(i + 1) * sectors.count()].iter().copied().filter(|&j| j != u32::MAX)
                 })
             }
             Joining::Radius(reach) => {
-                let near = Neighbourhood::new(&positions, owned, *reach).within(*reach);
+                let near = NodeGrid::new(&positions, owned, *reach).within(*reach);
                 both_ways(positions.len(), |i| near[i].iter().copied())
             }
         };
         Ok(Self { positions, owners, starts, ends, spacing: plan.spacing })
     }
 
-    /// Weights for its edges: `R^alpha` by `table` times the length in spacings, R from `stream`, with `fields` at the places
-    /// where `put` puts the nodes.
+    /// Weights of its edges: `R^alpha` by `table` times the length in spacings, R from `stream`, with `fields` evaluated at
+    /// the positions transformed by `put`.
     #[must_use]
     pub fn weigh(
         &self,
@@ -174,7 +135,7 @@ impl Scatter {
         EdgeWeights { weights, fraction }
     }
 
-    /// How many nodes there are; they are called from 0 on.
+    /// The number of nodes, which are numbered from 0.
     #[must_use]
     pub fn len(&self) -> usize {
         self.positions.len()
@@ -186,31 +147,31 @@ impl Scatter {
         self.positions.is_empty()
     }
 
-    /// Where `node` is, in scene units.
+    /// The position of `node`, in scene units.
     #[must_use]
     pub fn position(&self, node: Node) -> DVec3 {
         self.positions[node.0 as usize]
     }
 
-    /// Where all nodes are.
+    /// The positions of all nodes.
     #[must_use]
     pub fn positions(&self) -> &[DVec3] {
         &self.positions
     }
 
-    /// The owner of `node`; 0 where there are none.
+    /// The owner of `node`; 0 without owners.
     #[must_use]
     pub fn owner(&self, node: Node) -> u8 {
         self.owners.get(node.0 as usize).copied().unwrap_or(0)
     }
 
-    /// How many edges there are, each counted once.
+    /// The number of undirected edges.
     #[must_use]
     pub fn count_edges(&self) -> u64 {
         self.ends.len() as u64 / 2
     }
 
-    /// Which edges are those of `node`.
+    /// The indices of the edges of `node`.
     #[must_use]
     pub fn edges(&self, node: Node) -> Range<usize> {
         self.starts[node.0 as usize] as usize..self.starts[node.0 as usize + 1] as usize
@@ -222,22 +183,22 @@ impl Scatter {
         &self.ends[range]
     }
 
-    /// The nodes nearest to `points`; of several the first.
+    /// The node nearest to each of `points`; of equally near ones the first.
     #[must_use]
     pub fn nearest(&self, points: &[DVec3]) -> Vec<Node> {
-        let near = Neighbourhood::new(&self.positions, None, self.spacing * CELL);
+        let near = NodeGrid::new(&self.positions, None, self.spacing * CELL);
         points.iter().filter_map(|&p| near.nearest_to(p).map(Node)).collect()
     }
 }
 
-/// The edges of `count` nodes both ways, once each, from those that `near` lists in at least one direction: where each
-/// node's start, and their other ends.
+/// The symmetric closure of the directed edges `near` of `count` nodes, as adjacency lists: the index of each node's first
+/// edge, and the other ends.
 fn both_ways<I: Iterator<Item = u32>>(count: usize, near: impl Fn(usize) -> I) -> (Vec<u32>, Vec<Node>) {
     let is_back = |i: usize, j: u32| near(j as usize).any(|k| k as usize == i);
-    // An edge that both ends list is told by the lower one.
+    // An edge that both ends list counts for the lower one.
     let listed = |i: usize| {
-        let is_told = move |j: &u32| (i as u32) < *j || !is_back(i, *j);
-        near(i).filter(is_told)
+        let is_first = move |j: &u32| (i as u32) < *j || !is_back(i, *j);
+        near(i).filter(is_first)
     };
     let mut starts = vec![0_u32; count + 1];
     for i in 0..count {
@@ -292,8 +253,7 @@ mod tests {
         Scatter::new(&plan, &Ball(1.0), &Stream::new(seed, "scatter")).unwrap()
     }
 
-    /// No two nodes nearer than the spacing, and no room for another: held to a hundred thousand random places, which
-    /// know nothing of cells.
+    /// The sample is a maximal Poisson-disc sample: against random probes, which are independent of cells.
     #[test]
     fn nodes_are_apart_and_leave_no_room() {
         for (is_plane, spacing) in [(false, 0.13), (true, 0.03), (false, 0.9), (true, 2.5)] {
@@ -335,7 +295,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(200))]
 
-        /// Edges are those that brute force finds, whatever the shape: clumps far apart, owners, ties.
+        /// Against brute force, with distant clusters, owners and ties.
         #[test]
         fn yao_edges_equal_brute_force(
             points in prop::collection::vec(prop::array::uniform3(-9..9_i32), 2..400), far in prop::bool::ANY,
@@ -352,7 +312,7 @@ mod tests {
             nodes.dedup();
             let owners: Vec<u8> = (0..nodes.len()).map(|i| if owned { (i % 3) as u8 } else { 0 }).collect();
             let joins = |i: usize, j: usize| i != j && (owners[i] == owners[j] || owners[i] * owners[j] == 0);
-            let found = Neighbourhood::new(&nodes, Some(&owners), 1.7).yao(&sectors);
+            let found = NodeGrid::new(&nodes, Some(&owners), 1.7).yao(&sectors);
             for i in 0..nodes.len() {
                 for sector in 0..sectors.count() {
                     let expected = (0..nodes.len())

@@ -1,8 +1,25 @@
-//! The sectors of Yao graphs: space around a node cut by rays (in the plane) or planes (in space).
+//! The sectors of Yao graphs: cones of directions about a node, between rays in the plane or planes in space.
 
 use crate::math::{DVec2, DVec3};
 
-/// How space around a node is cut up.
+/// Why there are no such sectors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SectorsError {
+    /// Not a number of sectors for the plane.
+    #[error("a Yao graph in the plane has 3 to 24 sectors, not {0}")]
+    Plane(u32),
+    /// Not a number of sectors for space.
+    #[error("a Yao graph in space has 6, 8 or 24 sectors, not {0}")]
+    Space(u32),
+}
+
+impl From<SectorsError> for String {
+    fn from(error: SectorsError) -> Self {
+        error.to_string()
+    }
+}
+
+/// A partition of the directions about a node.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sectors {
     /// By this many rays in the plane, the first along x (Xu and Mould 2012, Fig. 3 has six).
@@ -19,11 +36,11 @@ impl Sectors {
     /// Most sectors there can be.
     pub const MOST: usize = 24;
 
-    /// `count` sectors.
+    /// The partition into `count` sectors: 3 to 24 in the plane; 6, 8 or 24 in space.
     ///
     /// # Errors
-    /// A sentence that tells what counts there are.
-    pub fn new(count: u32, is_plane: bool) -> Result<Self, String> {
+    /// [`SectorsError`].
+    pub fn new(count: u32, is_plane: bool) -> Result<Self, SectorsError> {
         match (is_plane, count) {
             (true, 3..=24) => {
                 let angle = |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(count);
@@ -32,12 +49,12 @@ impl Sectors {
             (false, 6) => Ok(Self::Faces),
             (false, 8) => Ok(Self::Orthants),
             (false, 24) => Ok(Self::Both),
-            (true, _) => Err(format!("a Yao graph in the plane has 3 to 24 sectors, not {count}")),
-            (false, _) => Err(format!("a Yao graph in space has 6, 8 or 24 sectors, not {count}")),
+            (true, _) => Err(SectorsError::Plane(count)),
+            (false, _) => Err(SectorsError::Space(count)),
         }
     }
 
-    /// How many there are.
+    /// The number of sectors.
     #[must_use]
     pub fn count(&self) -> usize {
         match self {
@@ -48,7 +65,7 @@ impl Sectors {
         }
     }
 
-    /// The sector in which `d` lies, which is not zero. Borders belong to one side.
+    /// The sector that contains the vector `d`, which must not be 0. A border belongs to one of its sectors.
     #[inline]
     #[must_use]
     pub fn of(&self, d: DVec3) -> usize {
@@ -78,8 +95,7 @@ impl Sectors {
         }
     }
 
-    /// May something in the box from `low` to `high`, seen from the node, lie in sector `i`? Never wrong where the answer
-    /// is no.
+    /// May sector `i` intersect the box from `low` to `high`, relative to the node? Conservative: only `false` is certain.
     #[must_use]
     pub fn may_hold(&self, i: usize, low: DVec3, high: DVec3) -> bool {
         let orthant =

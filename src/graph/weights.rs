@@ -2,29 +2,29 @@
 
 use crate::math::{Weights, power};
 
-/// Entries of a table: the resolution of R. A hash's top 12 bits choose one.
+/// Entries of a table: the resolution of R. The top 12 bits of a hash are the index.
 pub(super) const ENTRIES: usize = 1 << 12;
-/// Fractional bits of a weight, where the largest weight leaves room for them.
+/// Fractional bits of a weight, unless the largest weight leaves no room for them.
 const FRACTION: u32 = 12;
-/// Fewer fractional bits than this would show: 1/16 of the least weight.
+/// Least number of fractional bits: rounding is at most 1/16 of the least weight.
 const LEAST_FRACTION: u32 = 4;
-/// A weight takes at most this many bits, so that costs can be compared modulo the bits of a cell.
+/// Most bits of a weight, so that costs can be compared modulo the bits of a cell.
 const WEIGHT_BITS: u32 = 24;
 
-/// Why weights cannot be used.
+/// Why weights cannot be tabulated.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum WeightError {
     /// The largest weight is out of range.
     #[error("an edge may weigh up to {largest:.3e}, which is more than {limit}: lower alpha, max or the cost fields")]
     TooLarge {
-        /// The largest weight an edge can have.
+        /// The largest weight that an edge can have.
         largest: f64,
-        /// The largest that can be planned with.
+        /// The largest weight allowed.
         limit: u32,
     },
 }
 
-/// The bounds of a graph's weights, as fixed-point integers.
+/// The bounds of a graph's weights, in fixed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WeightRange {
     /// No edge weighs less; never 0.
@@ -43,7 +43,7 @@ impl WeightRange {
     }
 }
 
-/// `R^alpha` times the length of an edge, for each of up to three lengths.
+/// Tables of `R^alpha` times the length of an edge, one for each of three length classes.
 #[derive(Clone, Debug)]
 pub struct WeightTable {
     entries: Box<[[u32; ENTRIES]; 3]>,
@@ -84,7 +84,7 @@ impl WeightTable {
         self.fraction
     }
 
-    /// The entry that the hash `h` of an edge of length class `class` (0: 1, 1: sqrt 2, 2: sqrt 3) chooses.
+    /// The weight of an edge with the hash `h` and the length class `class` (0: 1, 1: sqrt 2, 2: sqrt 3).
     #[inline(always)]
     pub(super) fn entry(&self, class: usize, h: u64) -> u32 {
         self.entries[class][(h >> 52) as usize]
@@ -97,12 +97,13 @@ impl WeightTable {
     }
 }
 
-/// Length of an edge in lattice steps: the square root of how many coordinates change, less one the class.
+/// Length, in lattice steps, of an edge of a length class: the square root of `class + 1`, the number of coordinates that
+/// change.
 pub(super) fn length(class: usize) -> f64 {
     [1.0, std::f64::consts::SQRT_2, 1.732_050_807_568_877_2][class]
 }
 
-/// The nearest fixed-point integer to `x`, which must be in range.
+/// `x` rounded to fixed point; it must be in range.
 pub(super) fn fixed(x: f64, fraction: u32) -> u32 {
     libm::floor(x * f64::from(1_u32 << fraction) + 0.5) as u32
 }

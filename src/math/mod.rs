@@ -3,6 +3,8 @@
 //!
 //! Later stages need never handle platform differences: everything here gives the same bits everywhere.
 
+mod checksum;
+mod direction;
 mod name;
 mod per_round;
 mod power;
@@ -16,6 +18,8 @@ mod weights;
 
 pub use glam::{DMat3, DVec2, DVec3};
 
+pub use checksum::fnv1a;
+pub use direction::{GOLDEN_ANGLE, from_height, from_polar, from_sin_cos};
 pub use name::{Colour, Degrees, Point, Ref, unknown};
 pub use per_round::PerRound;
 pub use power::power;

@@ -9,7 +9,7 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::borrow::Cow;
 
-/// An angle in degrees, as files give it; code works in radians.
+/// An angle in degrees, as scene files give it; code computes in radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Degrees(pub f64);
@@ -94,7 +94,7 @@ impl Colour {
         Self(rgb.map(|byte| from_srgb(f64::from(byte) / 255.0)))
     }
 
-    /// Its sRGB encoding as six digits, as in `707070`.
+    /// Its sRGB encoding as six lower-case hexadecimal digits, such as `707070`.
     #[must_use]
     pub fn hex(self) -> String {
         self.0.map(|c| format!("{:02x}", srgb_byte(c))).concat()
@@ -138,7 +138,8 @@ impl JsonSchema for Colour {
     }
 }
 
-/// "There is no shape `crwon`: did you mean `crown`?", or the names there are.
+/// The message about an unknown name, with the most similar of the `known` ones (Damerau-Levenshtein) or all of them:
+/// "there is no shape `crwon`; did you mean `crown`?"
 pub fn unknown<'a>(kind: &str, name: &str, known: impl Iterator<Item = &'a String>) -> String {
     let known: Vec<_> = known.map(String::as_str).collect();
     let near = known

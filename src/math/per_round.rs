@@ -1,4 +1,4 @@
-//! Numbers that may differ from round to round of a repeated step.
+//! Numbers that may vary over the rounds of a repeated step.
 
 use std::borrow::Cow;
 
@@ -6,24 +6,24 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 
-/// A number for all rounds, a list with one each (the last stays), or a first one that changes by a ratio.
+/// A number for all rounds, a list with one for each (the last repeats), or a geometric progression.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PerRound {
-    /// The same in all.
+    /// The same in every round.
     All(f64),
-    /// One each; the last one stays.
+    /// One for each round, at least one; the last repeats.
     Each(Vec<f64>),
-    /// The first, and each over the one before.
+    /// A geometric progression.
     Ratio {
-        /// In the first round.
+        /// The first term.
         first: f64,
-        /// Each over the one before.
+        /// Each term over the one before.
         ratio: f64,
     },
 }
 
 impl PerRound {
-    /// The number in a round, counted from 0.
+    /// The number in `round`, counted from 0.
     #[must_use]
     pub fn at(&self, round: u32) -> f64 {
         match self {
@@ -33,7 +33,7 @@ impl PerRound {
         }
     }
 
-    /// The number of what is not repeated, where it is only one.
+    /// The number where it is the same in every round.
     #[must_use]
     pub fn once(&self) -> Option<f64> {
         if let Self::All(number) = self { Some(*number) } else { None }

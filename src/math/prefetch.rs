@@ -1,12 +1,12 @@
-//! A hint to the cache, the project's one use of `unsafe`.
+//! Prefetching, the project's one use of `unsafe`.
 //!
-//! Left out, `benches/plan.rs` takes 1.5 times as long at 256^3 and 1.2 times at 2048^2, and `benches/trace.rs` 1.1
+//! Without it `benches/plan.rs` takes 1.5 times as long at 256^3 and 1.2 times at 2048^2, and `benches/trace.rs` 1.1
 //! times for a million segments (`benches/README.md`).
 
-/// Bytes that a cache moves at once.
+/// Size of a cache line in bytes.
 const LINE: usize = 64;
 
-/// Asks for the cache lines of `slice[index]`; does nothing where the index is out of range.
+/// Prefetches the cache lines of `slice[index]`; does nothing where the index is out of range.
 #[inline(always)]
 pub(crate) fn prefetch<T>(slice: &[T], index: usize) {
     #[cfg(target_arch = "x86_64")]

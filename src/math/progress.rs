@@ -1,4 +1,4 @@
-//! The handle that long work is given: it reports how far it is and learns that it should stop.
+//! The handle by which long work reports progress and is cancelled.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -10,7 +10,7 @@ pub struct Cancelled;
 
 type Listener = dyn FnMut(&str, f64) + Send;
 
-/// Progress out, cancellation in. Clones share both; the default one is silent and never cancels.
+/// Reports progress and carries cancellation. Clones share both; the default reports nothing and is never cancelled.
 #[derive(Clone, Default)]
 pub struct Progress {
     stop: Arc<AtomicBool>,
@@ -18,15 +18,15 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// A handle that stops when `stop` becomes true and tells `listener` the stage and its share done (0 to 1).
+    /// A handle that is cancelled when `stop` becomes true and reports stage and share done (0 to 1) to `listener`.
     pub fn new(stop: Arc<AtomicBool>, listener: impl FnMut(&str, f64) + Send + 'static) -> Self {
         Self { stop, listener: Some(Arc::new(Mutex::new(listener))) }
     }
 
-    /// Says that `share` (0 to 1) of `stage` is done.
+    /// Reports that `share` (0 to 1) of `stage` is done.
     ///
     /// # Errors
-    /// [`Cancelled`] when the work should stop; callers pass it on with `?`.
+    /// [`Cancelled`] once the work is to stop; callers pass it on with `?`.
     pub fn report(&self, stage: &str, share: f64) -> Result<(), Cancelled> {
         if let Some(listener) = &self.listener
             && let Ok(mut listener) = listener.lock()
@@ -36,8 +36,10 @@ impl Progress {
         self.check()
     }
 
+    /// Tests for cancellation without a report.
+    ///
     /// # Errors
-    /// [`Cancelled`] when the work should stop.
+    /// [`Cancelled`] once the work is to stop.
     pub fn check(&self) -> Result<(), Cancelled> {
         if self.stop.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
     }

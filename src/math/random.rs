@@ -4,10 +4,13 @@ use std::convert::Infallible;
 
 use rand::rand_core::TryRng;
 
+use super::fnv1a;
+
 /// The odd integer nearest to 2^64 divided by the golden ratio: the step of a Weyl sequence.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// Mixes all bits of `x` into all bits of the result (the finaliser of SplitMix64, Steele et al. 2014).
+/// A bijective hash in which every bit of `x` affects every bit of the result (the finaliser of SplitMix64, Steele et al.
+/// 2014).
 #[inline]
 #[must_use]
 pub const fn mix(x: u64) -> u64 {
@@ -16,18 +19,17 @@ pub const fn mix(x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
-/// The name of what comes of a thing with a name, by index: told apart from all that come of others.
+/// The name of child `index` of the thing named `parent`; children of different parents differ.
 #[must_use]
 pub const fn name_of(parent: u64, index: u64) -> u64 {
-    // Neither 0 nor equal numbers may cancel out.
+    // An offset and two rounds: otherwise 0 would stay 0 and equal numbers would cancel.
     mix(mix(parent.wrapping_add(GOLDEN)) ^ index)
 }
 
 /// A named stream of random numbers.
 ///
-/// The n-th number depends on the seed, the name and n alone, so that streams never disturb each other and a
-/// longer draw starts with the shorter one. It implements `rand`'s generator traits; the values that `rand`'s
-/// distributions make of it are pinned by a test.
+/// The n-th number is a function of seed, name and n: streams are independent of each other, and a shorter draw is a
+/// prefix of a longer one. It implements `rand`'s generator traits; a test pins the values of `rand`'s distributions.
 ///
 /// ```
 /// use lichtenberg::math::Stream;
@@ -48,20 +50,16 @@ impl Stream {
     /// The stream called `name` of the scene whose seed is `seed`.
     #[must_use]
     pub fn new(seed: u64, name: &str) -> Self {
-        // FNV-1a: short names, and a fixed value on every platform.
-        let hash = name
-            .bytes()
-            .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3));
-        Self { key: mix(mix(seed.wrapping_add(GOLDEN)) ^ mix(hash)), next: 0 }
+        Self { key: mix(mix(seed.wrapping_add(GOLDEN)) ^ mix(fnv1a(name.bytes()))), next: 0 }
     }
 
-    /// The stream with this index among many that share a name.
+    /// The substream `index` of this stream.
     #[must_use]
     pub fn nth(&self, index: u64) -> Self {
         Self { key: mix(self.key ^ mix(index.wrapping_add(GOLDEN))), next: 0 }
     }
 
-    /// What tells this stream from all others.
+    /// The key by which this stream differs from all others.
     #[must_use]
     pub fn key(&self) -> u64 {
         self.key

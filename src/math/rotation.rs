@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-/// The rotation by `angle` radians about `axis`, of length 1, counterclockwise seen against it (Rodrigues).
+/// The right-handed rotation by `angle` radians about the unit vector `axis` (Rodrigues' formula).
 #[must_use]
 pub fn rotation(axis: DVec3, angle: f64) -> DMat3 {
     let (sin, cos) = (libm::sin(angle), libm::cos(angle));
@@ -10,23 +10,23 @@ pub fn rotation(axis: DVec3, angle: f64) -> DMat3 {
     DMat3::from_cols(turn(DVec3::X), turn(DVec3::Y), turn(DVec3::Z))
 }
 
-/// A rotation that takes z to `way`, of length 1.
+/// A right-handed frame whose z axis is the unit vector `z`; x and y are arbitrary (Duff et al. 2017, by `glam`).
 #[must_use]
-pub fn frame_along(way: DVec3) -> DMat3 {
-    let (x, y) = way.any_orthonormal_pair();
-    DMat3::from_cols(x, y, way)
+pub fn frame_along(z: DVec3) -> DMat3 {
+    let (x, y) = z.any_orthonormal_pair();
+    DMat3::from_cols(x, y, z)
 }
 
-/// `way`, of length 1, turned towards `target`, of length 1, by `angle` radians or until it is there.
+/// The unit vector `direction` rotated towards the unit vector `target` by `angle` radians, but not past it.
 #[must_use]
-pub fn turned_toward(way: DVec3, target: DVec3, angle: f64) -> DVec3 {
-    let between = libm::acos(way.dot(target).clamp(-1.0, 1.0));
+pub fn turned_toward(direction: DVec3, target: DVec3, angle: f64) -> DVec3 {
+    let between = libm::acos(direction.dot(target).clamp(-1.0, 1.0));
     if between <= angle {
         return target;
     }
-    // Straight away from the target any axis will do.
-    let axis = way.cross(target).normalize_or(way.any_orthonormal_vector());
-    (rotation(axis, angle) * way).normalize_or(way)
+    // Opposite to the target the axis is arbitrary.
+    let axis = direction.cross(target).normalize_or(direction.any_orthonormal_vector());
+    (rotation(axis, angle) * direction).normalize_or(direction)
 }
 
 #[cfg(test)]
@@ -35,8 +35,8 @@ mod tests {
 
     #[test]
     fn turns_stop_at_their_target() {
-        let way = turned_toward(DVec3::X, DVec3::NEG_Z, 0.3);
-        assert!((libm::acos(way.dot(DVec3::X)) - 0.3).abs() < 1e-12 && way.z < 0.0);
+        let turned = turned_toward(DVec3::X, DVec3::NEG_Z, 0.3);
+        assert!((libm::acos(turned.dot(DVec3::X)) - 0.3).abs() < 1e-12 && turned.z < 0.0);
         assert_eq!(turned_toward(DVec3::X, DVec3::NEG_Z, 2.0), DVec3::NEG_Z);
         let back = turned_toward(DVec3::Z, DVec3::NEG_Z, 0.5);
         assert!((libm::acos(back.dot(DVec3::Z)) - 0.5).abs() < 1e-12);

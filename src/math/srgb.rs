@@ -4,17 +4,16 @@ use std::sync::LazyLock;
 
 use super::power;
 
-/// The linear light from which on each byte above 0 is nearest.
+/// The least linear light that rounds to each code value above 0.
 static STEPS: LazyLock<[f64; 255]> = LazyLock::new(|| std::array::from_fn(|i| from_srgb((i as f64 + 0.5) / 255.0)));
 
-/// The byte nearest to the encoding of linear light, clamped: a search in place of a power, which takes ten times as
-/// long.
+/// The sRGB code value nearest to linear light, clamped. A binary search: a power takes ten times as long.
 #[must_use]
 pub fn srgb_byte(linear: f64) -> u8 {
     STEPS.partition_point(|step| *step <= linear) as u8
 }
 
-/// The sRGB encoding of linear light, clamped to 0 to 1.
+/// The sRGB encoding, 0 to 1, of linear light clamped to 0 to 1.
 #[must_use]
 pub fn to_srgb(linear: f64) -> f64 {
     let c = linear.clamp(0.0, 1.0);

@@ -8,7 +8,7 @@ use crate::files::{ExrHead, PngHead, REC709, Rgba, encode_exr_rows, encode_png_r
 use crate::glow::{Canvas, Composite, Layer, Pass, ShineError, shine};
 use crate::math::Progress;
 use crate::model::Stroke;
-use crate::raster::{Grey, Plate, Samples, Window};
+use crate::raster::{DataWindow, Grey, Plate, Samples};
 
 /// Rows that are coloured at a time.
 const STRIP: usize = 64;
@@ -181,7 +181,7 @@ impl Shone {
     fn exr_head(&self, plate: Option<&Plate>, channels: Vec<(String, bool)>, texts: &[(&str, &str)]) -> ExrHead {
         ExrHead {
             size: self.canvas.size,
-            window: plate.map_or_else(Window::default, |plate| plate.window),
+            window: plate.map_or_else(DataWindow::default, |plate| plate.window),
             channels,
             texts: texts.iter().map(|(keyword, text)| attribute(keyword, text)).collect(),
             chromaticities: Some(plate.and_then(|plate| plate.chromaticities).unwrap_or(REC709)),

@@ -8,7 +8,7 @@ use crate::files::{Rgba, add_mattes, encode_exr, encode_png16};
 use crate::math::{Cancelled, Progress, srgb_byte, to_srgb};
 use crate::model::Model;
 use crate::raster::{Layers, filmic};
-use crate::trace::{self, Look, Picture, View, World};
+use crate::trace::{self, Look, Picture, RenderSettings, World};
 
 /// A traced picture, in linear light, with the names of its objects and limbs.
 pub struct Traced {
@@ -22,7 +22,7 @@ pub struct Traced {
 ///
 /// # Errors
 /// [`Cancelled`] by `progress`.
-pub fn trace(model: &Model, view: &View, progress: &Progress) -> Result<Traced, Cancelled> {
+pub fn trace(model: &Model, view: &RenderSettings, progress: &Progress) -> Result<Traced, Cancelled> {
     let world = World::new(model);
     let picture = trace::render(&world, view, progress)?;
     let mut objects: Vec<String> = model.objects.iter().map(|o| o.name.clone()).collect();

@@ -1,24 +1,29 @@
-//! A cyclic array of buckets, no wider than the least weight: a bucket that is popped is final (Dial 1969; Dinitz 1978).
+//! A cyclic bucket queue whose buckets are no wider than the least weight, so that a popped bucket is final (Dial 1969;
+//! Dinitz 1978).
 
 use crate::graph::Node;
 
-/// Places in a chunk: the first holds the link to the next chunk, the others a node each. A power of two.
+/// Most buckets: more would cost more to walk than the nodes in them.
+pub(super) const MOST_BUCKETS: u32 = 1 << 20;
+
+/// Slots of a chunk: the first links to the next chunk, the others hold a node each. A power of two.
 pub(super) const CHUNK: usize = 64;
 
-/// The cursor of an empty bucket: the last place of chunk 0, which no bucket owns. Its first node so takes the same
-/// rare branch as one that fills a chunk, and what is written to that place is never read.
+/// The cursor of an empty bucket: the last slot of chunk 0, which no bucket owns. So the first node takes the same rare branch
+/// as one that fills a chunk; what is written to that slot is never read.
 const EMPTY: u32 = CHUNK as u32 - 1;
 
-/// Nodes by the bucket of their cost.
+/// Nodes by bucket, as linked lists of chunks.
 pub(super) struct Buckets {
-    /// For each bucket, the place in `pool` where its next node goes.
+    /// For each bucket, the index in `pool` of the slot for its next node.
     cursors: Vec<u32>,
-    /// Chunks, one after the other.
+    /// All chunks.
     pool: Vec<u32>,
+    /// Unused chunks.
     free: Vec<u32>,
 }
 
-/// The rest of a bucket that has been emptied: its chunks are read by [`Buckets::next_chunk`].
+/// The contents of a bucket that has been emptied, to be read by [`Buckets::next_chunk`].
 pub(super) struct Taken {
     chunk: u32,
     len: u32,
@@ -30,7 +35,7 @@ impl Buckets {
         Self { cursors: vec![EMPTY; count], pool: vec![0; CHUNK], free: Vec::new() }
     }
 
-    /// Puts `node` in `bucket` if `wanted`, without a branch on that.
+    /// Pushes `node` into `bucket` if `wanted`, branchless.
     #[inline(always)]
     pub fn push_if(&mut self, wanted: bool, bucket: usize, node: Node) {
         let cursor = self.cursors[bucket];
@@ -42,7 +47,7 @@ impl Buckets {
         }
     }
 
-    /// Adds a chunk to `bucket`, whose cursor ran to the end of one.
+    /// Adds a chunk to `bucket`, whose cursor has reached the end of one.
     #[cold]
     #[inline(never)]
     fn grow(&mut self, bucket: usize, cursor: u32, node: Node) {
@@ -59,7 +64,7 @@ impl Buckets {
         }
     }
 
-    /// Empties `bucket`.
+    /// Pops `bucket`.
     #[inline]
     pub fn take(&mut self, bucket: usize) -> Taken {
         let cursor = std::mem::replace(&mut self.cursors[bucket], EMPTY);
@@ -67,7 +72,7 @@ impl Buckets {
         Taken { chunk, len: cursor - chunk }
     }
 
-    /// The next nodes of a taken bucket, or nothing when it has no more.
+    /// The next chunk of a popped bucket with its length, `None` at the end. The nodes start at 1.
     #[inline]
     pub fn next_chunk(&mut self, taken: &mut Taken) -> Option<([u32; CHUNK], usize)> {
         if taken.chunk == 0 {
@@ -82,7 +87,7 @@ impl Buckets {
         Some((places, len))
     }
 
-    /// The nodes that [`Buckets::next_chunk`] would give next, to look ahead.
+    /// The nodes that [`Buckets::next_chunk`] will give next, for prefetching.
     #[inline]
     pub fn upcoming(&self, taken: &Taken) -> &[u32] {
         if taken.chunk == 0 {

@@ -1,4 +1,4 @@
-//! What a search keeps of each node: four bytes that hold its cost and the slot of its predecessor.
+//! The state of a search: four bytes a node for its cost and the slot of its predecessor.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -6,20 +6,20 @@ use bytemuck::allocation::zeroed_slice_box;
 
 use crate::graph::Graph;
 
-/// One cell a node: `cost << SLOT_BITS | slot + 1`, cost modulo the bits that are left.
+/// One cell a node: `cost << SLOT_BITS | slot + 1`, the cost modulo the remaining bits.
 ///
-/// 0 is a node not yet reached, so that untouched pages of memory are never filled. A generator has slot bits 0 and a cost above 0. Costs are compared modulo 2^32: neighbours differ by
-/// no more than the largest weight, which is far below half of that.
+/// 0 is a node not yet reached, so that untouched pages of memory are never allocated. A generator has slot bits 0 and a cost
+/// above 0. Costs are compared modulo 2^32: neighbours differ by at most the largest weight, far below half of that.
 pub(super) struct Cells {
     cells: Box<[AtomicU32]>,
 }
 
-/// The bits of a cell that hold its slot.
+/// The bits of a cell that hold the slot.
 pub(super) const fn slot_mask<G: Graph>() -> u32 {
     (1 << G::SLOT_BITS) - 1
 }
 
-/// What stands for the cost of an unreached node: far above any other that is compared with it.
+/// Difference by which an unreached node is above every cost that is compared with it.
 const FAR: u32 = 1 << 30;
 
 impl Cells {
@@ -36,8 +36,8 @@ impl Cells {
         self.cells[cell].store(value, Ordering::Relaxed);
     }
 
-    /// Stores the smaller of `new` and what is there; returns what was there, or something far above `new` where
-    /// nothing was. Only one thread may write.
+    /// Stores the minimum of `new` and the old value; returns the old value, or one far above `new` if the node was unreached.
+    /// Only one thread may write.
     #[inline(always)]
     pub fn lower(&self, cell: usize, new: u32) -> u32 {
         let slot = &self.cells[cell];
@@ -48,7 +48,7 @@ impl Cells {
         old
     }
 
-    /// [`Cells::lower`] while other threads do the same.
+    /// [`Cells::lower`], atomic.
     #[inline(always)]
     pub fn lower_shared(&self, cell: usize, new: u32) -> u32 {
         let slot = &self.cells[cell];

@@ -1,25 +1,23 @@
-//! The advancing front: what every thread of a search does with the nodes of a bucket.
+//! The advancing front: settling the nodes of a bucket and relaxing their edges.
 
-use super::buckets::{Buckets, CHUNK};
+use super::PlanError;
+use super::buckets::{Buckets, CHUNK, MOST_BUCKETS};
 use super::cells::{Cells, slot_mask};
-use super::search::PlanError;
 use crate::graph::{Graph, Node, WeightRange};
 
-/// More buckets than this would cost more to walk than the nodes in them.
-pub(super) const MOST_BUCKETS: u32 = 1 << 20;
-/// The list of wanted nodes is swept each time costs have advanced by this much, in the units of a cell.
+/// Advance of costs, in the units of a cell, after which the list of wanted nodes is swept.
 const SWEEP: u32 = (1 << 29) - 1;
 
-/// How costs fall into buckets.
+/// The map from costs to buckets.
 #[derive(Clone, Copy)]
-pub(super) struct Width {
-    /// A cell shifted right by this is the number of its bucket, before it is wrapped.
+pub(super) struct BucketWidth {
+    /// A cell shifted right by this is the number of its bucket before wrapping.
     shift: u32,
-    /// Number of buckets less one: a mask.
+    /// The number of buckets less 1, a mask.
     wrap: u32,
 }
 
-impl Width {
+impl BucketWidth {
     pub fn new(range: WeightRange, slot_bits: u32) -> Result<Self, PlanError> {
         let log = range.least.ilog2();
         // One bucket for the current one and one for rounding.
@@ -30,7 +28,7 @@ impl Width {
         Ok(Self { shift: log + slot_bits, wrap: count - 1 })
     }
 
-    /// Number of buckets.
+    /// The number of buckets.
     pub fn count(self) -> usize {
         self.wrap as usize + 1
     }
@@ -41,43 +39,43 @@ impl Width {
         (cell >> self.shift & self.wrap) as usize
     }
 
-    /// Where the bucket of `cell` starts, in the units of a cell.
+    /// The start of the bucket of `cell`, in the units of a cell.
     pub fn base(self, cell: u32) -> u32 {
         cell >> self.shift << self.shift
     }
 
-    /// The bits of a cell below its bucket.
+    /// The bits of a cell below its bucket's number.
     pub fn within(self) -> u32 {
         (1 << self.shift) - 1
     }
 
-    /// Where the bucket after the one at `base` starts.
+    /// The start of the bucket after the one at `base`.
     pub fn next(self, base: u32) -> u32 {
         base.wrapping_add(1 << self.shift)
     }
 }
 
-/// What a search works on.
+/// The graph and the state of a search.
 pub(super) struct Front<'a, G> {
     pub graph: &'a G,
     pub cells: &'a Cells,
-    pub width: Width,
-    /// The cell of a generator: the least cost there is.
+    pub width: BucketWidth,
+    /// The cell of a generator: the least cost.
     pub start: u32,
-    /// Nodes that come down within their bucket wait in it already: the bits below a bucket. 0 where they do not, since
-    /// their costs are those of an earlier search.
+    /// [`BucketWidth::within`] where a node whose cost falls within its bucket is in that bucket already; 0 where it may not be,
+    /// since its cost is that of an earlier search.
     pub waiting: u32,
 }
 
-/// The nodes that a search still waits for.
-pub(super) struct Wanted(Option<Vec<Node>>);
+/// The wanted nodes that are not known to be settled.
+pub(super) struct WantedNodes(Option<Vec<Node>>);
 
-impl Wanted {
+impl WantedNodes {
     pub fn new(nodes: Option<&[Node]>) -> Self {
         Self(nodes.map(<[_]>::to_vec))
     }
 
-    /// Are all settled, now that everything below `base` is?
+    /// Are all settled, given that all costs below `base` are final?
     pub fn is_done<G: Graph>(&mut self, front: &Front<'_, G>, base: u32) -> bool {
         let Some(wanted) = &mut self.0 else { return false };
         let is_settled = |node: &Node| {
@@ -85,7 +83,7 @@ impl Wanted {
             cell != 0 && (cell.wrapping_sub(base) as i32) < 0
         };
         while wanted.pop_if(|node| is_settled(node)).is_some() {}
-        // Costs are compared modulo 2^32, so nothing may stay on the list for long once it is settled.
+        // Costs are compared modulo 2^32, so settled nodes must leave the list before they wrap.
         if base & SWEEP < 1 << front.width.shift {
             wanted.retain(|node| !is_settled(node));
         }
@@ -95,7 +93,7 @@ impl Wanted {
 
 impl<G: Graph> Front<'_, G> {
     /// Settles the nodes of a chunk that still belong to the bucket at `base` and relaxes their edges, in two passes
-    /// without unforeseeable branches; returns how many were settled. `SHARED` allows other threads to do the same.
+    /// without unpredictable branches; returns the number of nodes settled. With `SHARED` other threads may do the same.
     #[inline(always)]
     pub fn advance<const SHARED: bool>(&self, base: u32, nodes: &[u32], buckets: &mut Buckets) -> usize {
         let Self { graph, cells, width, waiting, .. } = *self;
@@ -107,7 +105,7 @@ impl<G: Graph> Front<'_, G> {
             let cell = graph.cell(node);
             let value = cells.get(cell);
             live[lives] = (node, cell, value);
-            // The others were settled earlier.
+            // The others are stale entries.
             lives += usize::from(width.bucket(value) == current);
         }
         for &(_, cell, _) in &live[..lives] {
@@ -118,13 +116,13 @@ impl<G: Graph> Front<'_, G> {
             graph.edges(node, |edge| {
                 let new = cost.wrapping_add(edge.weight << G::SLOT_BITS) | (edge.back + 1);
                 let old = if is_shared { cells.lower_shared(edge.cell, new) } else { cells.lower(edge.cell, new) };
-                // A node is pushed when it comes down from a higher bucket.
+                // A node is pushed when its cost falls into a lower bucket.
                 let above = old.wrapping_sub(new & !waiting) as i32 > waiting as i32;
                 buckets.push_if(above, width.bucket(new), edge.node);
             });
         };
         for &(node, _, value) in &live[..lives] {
-            // Cells that only this thread writes need no care.
+            // Cells that only this thread writes need no atomic exchange.
             if SHARED && !graph.is_inner(node) {
                 relax(node, value, true);
             } else {

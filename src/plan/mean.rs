@@ -1,18 +1,17 @@
-//! What least-cost paths cost by length.
+//! The mean cost of least-cost paths by length.
 
 use super::{Goal, plan};
 use crate::graph::{Graph, Lattice, LatticeError, Node, Window};
 use crate::math::{Progress, Stream, Weights};
 
-/// How far from the line it is measured, in lattice steps: about where a glow ends. Nearer a step costs more, since paths
-/// have less to choose from, and far away a tenth less.
+/// Distance at which it is measured, in lattice steps: about the extent of a glow. Nearer, a step costs more, since there are
+/// fewer paths to choose from; far away a tenth less.
 const REACH: u32 = 16;
-/// Nodes across, in the plane and along each side in space.
+/// Nodes along the line in the plane, and along each side of the plane in space.
 const ACROSS: [u32; 2] = [2048, 48];
 
-/// The mean cost per lattice step of least-cost paths from a line (in space, from a plane), in plain numbers: what costs
-/// are divided by to become lengths. With alpha 3 it is a third of the mean weight with 4 neighbours, and under a tenth
-/// with 8.
+/// The mean cost per lattice step of least-cost paths from a line (in space, from a plane), as a real number: the divisor
+/// that converts costs to lengths. With alpha 3 it is a third of the mean weight with 4 neighbours, and under a tenth with 8.
 ///
 /// # Errors
 /// [`LatticeError::Weights`] where weights are out of range.
@@ -26,7 +25,7 @@ pub fn mean_cost<const N: usize>(weights: Weights) -> Result<f64, LatticeError> 
         lattice.nodes().filter(is_there).collect::<Vec<_>>()
     };
     let (line, ends) = (at(0), at(REACH));
-    // Nothing cancels it, and weights are in range.
+    // It is never cancelled, and weights are in range.
     let Ok(plan) = plan(&lattice, &line, Goal::Nodes(&ends), &Progress::default()) else {
         return Err(LatticeError::Empty);
     };
@@ -40,7 +39,7 @@ mod tests {
     use super::*;
     use crate::math::power;
 
-    /// The mean weight of an edge is far more than what least-cost paths pay for a step.
+    /// Least-cost paths pay far less for a step than the mean weight of an edge.
     #[test]
     fn paths_pay_less_than_the_mean() {
         // The mean of R^alpha over (1, max).

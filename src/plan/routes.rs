@@ -1,27 +1,26 @@
-//! Least-cost paths over graphs whose edges are stored: a radix heap (Ahuja et al. 1990), whose time is linear in the
-//! edges but for the few times that a node moves to a nearer bucket.
+//! Least-cost paths over scattered graphs: Dijkstra's algorithm (1959) with a radix heap (Ahuja et al. 1990).
 
 use crate::graph::{EdgeWeights, Node, Scatter};
 use crate::math::{Cancelled, Progress};
 
-/// Not reached.
+/// The cost of an unreached node.
 const FAR: u64 = u64::MAX;
 /// The predecessor of a generator.
 const NONE: u32 = u32::MAX;
-/// Nodes settled between two looks at whether the work was cancelled.
+/// Nodes settled between two tests for cancellation.
 const PAUSE: usize = 1 << 16;
 
-/// Least-cost paths: a cost and a predecessor for each node.
+/// Least-cost paths over a scattered graph: the cost and the predecessor of each node.
 pub struct Routes {
     costs: Vec<u64>,
-    before: Vec<u32>,
+    predecessors: Vec<u32>,
     settled: usize,
 }
 
-/// A queue whose least key never falls below the last one taken.
+/// A monotone priority queue: no key is below the last one popped.
 struct RadixHeap {
     last: u64,
-    /// Keys by the highest bit in which they differ from the last one.
+    /// Keys by the highest bit in which they differ from `last`, 0 for equal ones.
     buckets: Vec<Vec<(u64, u32)>>,
 }
 
@@ -48,9 +47,8 @@ impl RadixHeap {
     }
 }
 
-/// Least costs over `graph` with these `weights` from `generators`, each of which starts with the fixed-point cost beside it, until all of
-/// `wanted` are settled or nothing is left; with nothing wanted, to every node. Equal costs go to the predecessor with
-/// the lower number.
+/// Least costs over `graph` with `weights` from `generators`, each with its initial fixed-point cost, until all of `wanted`
+/// are settled; to every node if `wanted` is empty. Of predecessors with equal costs the lowest number is chosen.
 ///
 /// # Errors
 /// [`Cancelled`] by `progress`.
@@ -62,7 +60,7 @@ pub fn routes(
     progress: &Progress,
 ) -> Result<Routes, Cancelled> {
     let mut costs = vec![FAR; graph.len()];
-    let mut before = vec![NONE; graph.len()];
+    let mut predecessors = vec![NONE; graph.len()];
     let mut is_wanted = vec![false; if wanted.is_empty() { 0 } else { graph.len() }];
     let mut missing = 0_usize;
     for node in wanted {
@@ -96,18 +94,18 @@ pub fn routes(
             let old = &mut costs[other as usize];
             if new < *old {
                 *old = new;
-                before[other as usize] = node;
+                predecessors[other as usize] = node;
                 queue.push(new, other);
-            } else if new == *old && before[other as usize] != NONE && node < before[other as usize] {
-                before[other as usize] = node;
+            } else if new == *old && predecessors[other as usize] != NONE && node < predecessors[other as usize] {
+                predecessors[other as usize] = node;
             }
         }
     }
-    Ok(Routes { costs, before, settled })
+    Ok(Routes { costs, predecessors, settled })
 }
 
 impl Routes {
-    /// How many nodes have their final cost.
+    /// The number of nodes with final costs.
     #[must_use]
     pub fn settled(&self) -> usize {
         self.settled
@@ -119,9 +117,9 @@ impl Routes {
         Some(self.costs[node.0 as usize]).filter(|&cost| cost != FAR)
     }
 
-    /// The nodes from `node` back to its generator, both included, with their costs.
+    /// The nodes of the path from `node` back to its generator, both included, with their costs.
     pub fn path(&self, node: Node) -> impl Iterator<Item = (Node, u64)> + '_ {
-        let next = |&Node(at): &Node| Some(Node(self.before[at as usize])).filter(|&Node(to)| to != NONE);
+        let next = |&Node(at): &Node| Some(Node(self.predecessors[at as usize])).filter(|&Node(to)| to != NONE);
         std::iter::successors(Some(node), next).map(|at| (at, self.costs[at.0 as usize]))
     }
 }

@@ -1,51 +1,36 @@
-//! The search: least costs from generators, by buckets that are final when they are popped.
+//! The search: Dijkstra's algorithm (1959) with a bucket queue.
 
+use super::PlanError;
 use super::buckets::Buckets;
 use super::cells::Cells;
-use super::front::{Front, MOST_BUCKETS, Wanted, Width};
+use super::front::{BucketWidth, Front, WantedNodes};
 use super::shared;
 use super::tree::Plan;
 use crate::graph::{Graph, Node};
 use crate::math::{Cancelled, Progress};
 
-/// More threads than this wait for each other more than they work.
+/// Most threads: more would wait for each other more than they work.
 const MOST_THREADS: usize = 8;
 
-/// Cells of costs above this, in the units of a cell, cannot be told from lower ones by more than a bucket.
+/// Greatest cost, in the units of a cell, up to which cells can be compared modulo 2^32 with those of any other node.
 const FARTHEST: u64 = 1 << 31;
 
-/// How far a search goes.
+/// Where a search ends.
 #[derive(Clone, Copy, Debug)]
 pub enum Goal<'a> {
-    /// To every node that can be reached.
+    /// When every reachable node is settled.
     Everything,
-    /// Until all of these are settled, or nothing is left.
+    /// When all of these are settled, or every reachable node is.
     Nodes(&'a [Node]),
-    /// To every node that costs no more than this (fixed-point), and perhaps a few more.
+    /// When every node with at most this fixed-point cost is settled; a few more may be.
     Within(u64),
 }
 
-/// Why a search gave no plan.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum PlanError {
-    /// The weights span too wide a range for buckets as narrow as the least of them.
-    #[error(
-        "the largest weight is {ratio} times the least; at most {MOST_BUCKETS} can be planned with: lower alpha, max or the cost fields"
-    )]
-    TooWide {
-        /// Largest weight over least.
-        ratio: u32,
-    },
-    /// Stopped by its [`Progress`].
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-}
-
-/// Bytes that a search over `cells` cells may take at its peak: what is compared with the memory limit.
+/// Upper bound of the peak memory, in bytes, of a search over `cells` cells.
 #[must_use]
 pub fn bytes_needed(cells: u64) -> u64 {
-    // Four bytes a cell, and the nodes on the frontier with stale entries: measured below 1.5 bytes a cell
-    // (benches/README.md), more for small lattices, where it does not matter.
+    // Four bytes a cell, and the frontier with stale entries: measured below 1.5 bytes a cell (`benches/README.md`), more for
+    // small lattices, where it does not matter.
     cells * 6 + (1 << 20)
 }
 
@@ -68,7 +53,7 @@ pub fn bytes_needed(cells: u64) -> u64 {
 /// ```
 ///
 /// # Errors
-/// [`PlanError::TooWide`] when weights span too wide a range, [`PlanError::Cancelled`] when `progress` says stop.
+/// [`PlanError::TooWide`] where the ratio of the weights is too large, [`PlanError::Cancelled`] by `progress`.
 pub fn plan<'g, G: Graph>(
     graph: &'g G,
     generators: &[Node],
@@ -79,8 +64,8 @@ pub fn plan<'g, G: Graph>(
     plan_on(graph, generators, Later::NONE, goal, threads, progress)
 }
 
-/// [`plan`] from `generators` and from `later` ones, each of which starts with the cost (fixed-point, up to 2^25) beside it. Paths
-/// end at either, and [`Plan::cost`] counts from there.
+/// [`plan`] from `generators` and from `later` ones with their initial fixed-point costs, up to 2^25. Paths lead to either,
+/// and [`Plan::cost`] counts from there.
 ///
 /// # Errors
 /// As [`plan`].
@@ -94,8 +79,8 @@ pub fn plan_delayed<'g, G: Graph>(
     plan_on(graph, generators, Later { nodes: later, gives_way: false }, goal, 1, progress)
 }
 
-/// Least costs where each node of `starts` costs no more than the fixed-point cost (up to 2^25) beside it: one that is reached
-/// for less is no generator.
+/// Least costs from `starts` with their initial fixed-point costs, up to 2^25. A start that is reached at a lower cost from
+/// another is no generator.
 ///
 /// # Errors
 /// As [`plan`].
@@ -108,21 +93,21 @@ pub fn plan_from<'g, G: Graph>(
     plan_on(graph, &[], Later { nodes: starts, gives_way: true }, goal, 1, progress)
 }
 
-/// Nodes that start later than others.
+/// Generators with initial costs.
 #[derive(Clone, Copy)]
 pub(super) struct Later<'a> {
-    /// Each with its cost.
+    /// Each with its initial cost.
     pub nodes: &'a [(Node, u64)],
-    /// Do those that were reached for less by then stay as they are?
+    /// Do those that were reached at a lower cost keep that?
     pub gives_way: bool,
 }
 
 impl Later<'_> {
-    /// No node.
+    /// No generators.
     pub const NONE: Self = Self { nodes: &[], gives_way: false };
 }
 
-/// [`plan`] on so many threads; those that start later need one.
+/// [`plan`] on `threads` threads; on one only if there are `later` generators.
 pub(super) fn plan_on<'g, G: Graph>(
     graph: &'g G,
     generators: &[Node],
@@ -132,7 +117,7 @@ pub(super) fn plan_on<'g, G: Graph>(
     progress: &Progress,
 ) -> Result<Plan<'g, G>, PlanError> {
     debug_assert!(later.nodes.is_empty() || threads == 1);
-    let width = Width::new(graph.weight_range(), G::SLOT_BITS)?;
+    let width = BucketWidth::new(graph.weight_range(), G::SLOT_BITS)?;
     let cells = Cells::new(graph.cells());
     let mut buckets = Buckets::new(width.count());
     // Cost 1, since a cell of 0 means unreached.
@@ -154,19 +139,19 @@ pub(super) fn plan_on<'g, G: Graph>(
         // Rounded down to a power of two.
         (shared::run(front, buckets, wanted, 1 << threads.ilog2(), progress)?, u64::MAX)
     } else {
-        // Costs are compared modulo 2^32: none may start farther from its neighbours than that allows.
+        // Costs are compared modulo 2^32, which bounds the difference between a generator and its neighbours.
         let latest = 1_u64 << (30 - G::SLOT_BITS);
         let mut nodes: Vec<(Node, u64)> = later.nodes.iter().map(|&(node, cost)| (node, cost.min(latest))).collect();
         nodes.sort_unstable_by_key(|&(node, cost)| (cost, node));
-        run_alone(&front, buckets, Later { nodes: &nodes, ..later }, (Wanted::new(wanted), most), progress)?
+        run_alone(&front, buckets, Later { nodes: &nodes, ..later }, (WantedNodes::new(wanted), most), progress)?
     };
     Ok(Plan::new(graph, cells, settled, farthest))
 }
 
 impl<G: Graph> Plan<'_, G> {
-    /// Makes all of `generators`, those of the search among them, generators, after a search for [`Goal::Everything`]: what
-    /// [`plan`] from them would give, but only nodes that become cheaper are visited (2007, section 3.2: every iteration
-    /// plans to the whole structure that the one before made).
+    /// Adds generators after a search for [`Goal::Everything`]; `generators` includes the earlier ones. The result is that of
+    /// [`plan`], but only nodes whose cost decreases are visited (2007, section 3.2: every iteration plans to the whole
+    /// structure that the one before made).
     ///
     /// # Errors
     /// As [`plan`].
@@ -176,7 +161,7 @@ impl<G: Graph> Plan<'_, G> {
             *self = plan_on(graph, generators, Later::NONE, Goal::Everything, 1, progress)?;
             return Ok(());
         }
-        let width = Width::new(graph.weight_range(), G::SLOT_BITS)?;
+        let width = BucketWidth::new(graph.weight_range(), G::SLOT_BITS)?;
         let mut buckets = Buckets::new(width.count());
         let start = 1 << G::SLOT_BITS;
         for &generator in generators {
@@ -187,18 +172,18 @@ impl<G: Graph> Plan<'_, G> {
             }
         }
         let front = Front { graph, cells, width, start, waiting: 0 };
-        run_alone(&front, buckets, Later::NONE, (Wanted::new(None), u64::MAX), progress)?;
+        run_alone(&front, buckets, Later::NONE, (WantedNodes::new(None), u64::MAX), progress)?;
         Ok(())
     }
 }
 
-/// The search on one thread, until all of `until` are settled or everything up to that cost is; returns how many nodes
-/// were settled, and where the last bucket ended.
+/// The search on one thread, until the wanted nodes of `until` are settled or its cost is exceeded; returns the number of
+/// nodes settled and the end of the last bucket.
 fn run_alone<G: Graph>(
     front: &Front<'_, G>,
     mut buckets: Buckets,
     later: Later<'_>,
-    until: (Wanted, u64),
+    until: (WantedNodes, u64),
     progress: &Progress,
 ) -> Result<(usize, u64), Cancelled> {
     let (mut wanted, most) = until;
@@ -206,9 +191,9 @@ fn run_alone<G: Graph>(
     let Front { graph, cells, width, start, .. } = *front;
     let mut settled = 0;
     let mut base = width.base(start);
-    // Where the bucket after this one starts, not wrapped.
+    // The start of the next bucket, not wrapped.
     let mut end = u64::from(width.next(base));
-    // Nothing waits once a whole round of buckets was empty.
+    // Consecutive empty buckets: after a full cycle the queue is empty.
     let mut idle = 0;
     let limit = most.saturating_mul(1 << G::SLOT_BITS).saturating_add(u64::from(start));
     for turn in 0_u32.. {
@@ -216,7 +201,7 @@ fn run_alone<G: Graph>(
             later.split_first().filter(|(first, _)| u64::from(start) + (first.1 << G::SLOT_BITS) < end)
         {
             later = rest;
-            // 0 would mean unreached.
+            // A wrapped cost; 0 would mean unreached.
             let value = (u64::from(start) + (cost << G::SLOT_BITS)) as u32;
             let old = cells.get(graph.cell(node));
             if gives_way && old != 0 && (old.wrapping_sub(value) as i32) < 0 {

@@ -1,4 +1,4 @@
-//! The search against a textbook one, and the properties that later stages rely on.
+//! The search against Dijkstra's algorithm with a binary heap, and the properties on which later stages rely.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
@@ -25,8 +25,8 @@ fn lattice<const N: usize>(size: [u32; 3], seed: u64, alpha: f64, field: bool, h
     Lattice::new(window, &Stream::new(seed, "test"), Weights { max: 10.0, alpha }, field, mask).unwrap()
 }
 
-/// Dijkstra's algorithm as the books have it (1959), with a heap; shares nothing with the search but the graph.
-fn textbook<G: Graph>(graph: &G, generators: &[Node]) -> HashMap<Node, u64> {
+/// Dijkstra's algorithm (1959) with a binary heap; it shares only the graph with the search.
+fn dijkstra<G: Graph>(graph: &G, generators: &[Node]) -> HashMap<Node, u64> {
     let mut heap: BinaryHeap<_> = generators.iter().map(|&g| Reverse((0_u64, g))).collect();
     let mut costs = HashMap::new();
     while let Some(Reverse((cost, node))) = heap.pop() {
@@ -48,7 +48,7 @@ fn check<const N: usize>(size: [u32; 3], seed: u64, alpha: f64, field: bool, hol
     let nodes: Vec<Node> = lattice.nodes().collect();
     let generators = [nodes[0], nodes[nodes.len() / 2]];
     let all = plan(&lattice, &generators, Goal::Everything, &Progress::default()).unwrap();
-    let expected = textbook(&lattice, &generators);
+    let expected = dijkstra(&lattice, &generators);
     let costs = all.costs(nodes.iter().copied());
     let labels = all.labels(nodes.iter().copied());
     for &node in &nodes {
@@ -60,7 +60,7 @@ fn check<const N: usize>(size: [u32; 3], seed: u64, alpha: f64, field: bool, hol
     }
     assert_eq!(all.settled(), expected.len());
 
-    // Threads that share the front change nothing: the same cells.
+    // The parallel search gives the same cells.
     let shared = plan_on(&lattice, &generators, Later::NONE, Goal::Everything, 2, &Progress::default()).unwrap();
     assert_eq!(shared.settled(), all.settled());
     for &node in &nodes {
@@ -75,7 +75,7 @@ fn check<const N: usize>(size: [u32; 3], seed: u64, alpha: f64, field: bool, hol
     }
     assert!(early.settled() <= all.settled());
 
-    // Both ends of an edge see the same weight, and going back along it leads home.
+    // Both directions of an edge have the same weight, and the reverse edge leads back.
     for &node in nodes.iter().take(40) {
         lattice.edges(node, |edge| {
             assert_eq!(lattice.follow(edge.node, edge.back), (node, edge.weight));
@@ -105,11 +105,11 @@ proptest! {
 #[test]
 fn costs_may_exceed_a_cell() {
     let window = Window { spacing: 1.0, origin: [0; 3], size: [3000, 2, 2] };
-    let dear: Option<Field> = Some(([true, false, false], |_| FieldValue { sum: 60.0, factor: 1.0 }));
+    let costly: Option<Field> = Some(([true, false, false], |_| FieldValue { sum: 60.0, factor: 1.0 }));
     let lattice: Lattice<26> =
-        Lattice::new(window, &Stream::new(1, "long"), Weights { max: 10.0, alpha: 1.0 }, dear, None).unwrap();
+        Lattice::new(window, &Stream::new(1, "long"), Weights { max: 10.0, alpha: 1.0 }, costly, None).unwrap();
     let (root, end) = (lattice.node([0, 0, 0]), lattice.node([2999, 1, 1]));
-    let expected = textbook(&lattice, &[root]);
+    let expected = dijkstra(&lattice, &[root]);
     assert!(expected[&end] > 1 << 29, "the test wants a wrap: {}", expected[&end]);
     for goal in [Goal::Everything, Goal::Nodes(&[end, lattice.node([1, 1, 0])])] {
         let plan = plan(&lattice, &[root], goal, &Progress::default()).unwrap();
@@ -177,7 +177,7 @@ fn too_wide_a_range_is_refused() {
     assert!(plan(&steep, &[steep.node([0; 3])], Goal::Everything, &Progress::default()).is_ok());
 }
 
-/// Generators that are added later give what a search from all of them gives, and a search within a cost has all below it.
+/// `Plan::extend` gives the result of a search from all generators, and `Goal::Within` settles every node within its cost.
 #[test]
 fn searches_go_on_and_stop() {
     for (seed, holes, alpha) in [(1, false, 1.0), (2, true, 3.0), (3, true, 1.0)] {
@@ -202,9 +202,9 @@ fn searches_go_on_and_stop() {
     }
 }
 
-/// A start that is dearer than the way to it is no start.
+/// A start that costs more than its least-cost path is no generator.
 #[test]
-fn dear_starts_give_way() {
+fn costly_starts_give_way() {
     let lattice = lattice::<8>([60, 50, 1], 4, 1.0, false, false);
     let nodes: Vec<Node> = lattice.nodes().collect();
     let starts: Vec<(Node, u64)> =
@@ -216,10 +216,10 @@ fn dear_starts_give_way() {
     // From each start alone, the least of all.
     let mut expected: HashMap<Node, u64> = HashMap::new();
     for &(start, cost) in &starts {
-        let ways = textbook(&lattice, &[start]);
+        let costs = dijkstra(&lattice, &[start]);
         for &node in &nodes {
             let best = expected.entry(node).or_insert(u64::MAX);
-            *best = (*best).min(cost + ways[&node]);
+            *best = (*best).min(cost + costs[&node]);
         }
     }
     assert!(nodes.iter().all(|&node| costs[lattice.cell(node)] == expected[&node]));

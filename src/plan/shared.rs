@@ -1,20 +1,20 @@
-//! Several threads share each bucket, with one barrier a bucket; the result is that of one thread, since the least of
-//! the same numbers does not depend on their order.
+//! The parallel search: threads share each bucket, with one barrier a bucket. The result is that of one thread, since a
+//! minimum does not depend on the order of its operands.
 
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::buckets::{Buckets, CHUNK};
-use super::front::{Front, Wanted};
+use super::front::{Front, WantedNodes};
 use crate::graph::{Graph, Node};
 use crate::math::{Cancelled, Progress};
 
-/// Rounds of waiting in place before the processor is offered to others.
+/// Spins before a waiting thread yields.
 const SPINS: u32 = 4000;
-/// No turn comes after this one.
+/// Stands for no turn.
 const NEVER: u32 = u32::MAX;
 
-/// A meeting point: nobody goes on before all have come.
+/// A spinning barrier.
 struct Barrier {
     threads: usize,
     arrived: AtomicUsize,
@@ -32,28 +32,28 @@ impl Barrier {
         let mut spins = 0;
         while self.turn.load(Ordering::Acquire) == turn {
             spins += 1;
-            // A busy machine must not wait for our waiting.
+            // On a busy machine spinning would delay the thread that is waited for.
             if spins < SPINS { std::hint::spin_loop() } else { std::thread::yield_now() }
         }
     }
 }
 
-/// Nodes on their way to the thread that owns them, for the current turn and the next by the parity of the turn.
+/// Nodes sent to the thread that owns them, by the parity of the turn.
 type Inbox = [Mutex<Vec<u32>>; 2];
 
-/// What the threads share.
+/// The state that the threads share.
 struct Shared<'a, G> {
     front: Front<'a, G>,
     barrier: Barrier,
     inboxes: Vec<Inbox>,
-    /// How many nodes each of three turns has.
+    /// The number of nodes of three consecutive turns.
     counts: [AtomicUsize; 3],
-    /// The turn at which all stop because the work was cancelled.
+    /// The turn at which all threads stop after cancellation.
     stop: AtomicU32,
     settled: AtomicUsize,
 }
 
-/// Runs the search from what is in `buckets` on `threads` threads, a power of two; returns how many nodes were settled.
+/// Runs the search from the contents of `buckets` on `threads` threads, a power of two; returns the number of nodes settled.
 pub(super) fn run<G: Graph>(
     front: Front<'_, G>,
     buckets: Buckets,
@@ -70,13 +70,13 @@ pub(super) fn run<G: Graph>(
         settled: AtomicUsize::new(0),
     };
     std::thread::scope(|scope| {
-        // All on threads of their own: where this one took a part, the other waited a quarter of the time for it.
+        // The calling thread takes no part: where it did, the other waited for it a quarter of the time.
         let (mut first, mut progress) = (Some(buckets), Some(progress));
         for own in 0..threads {
             let shared = &shared;
             let buckets = first.take().unwrap_or_else(|| Buckets::new(shared.front.width.count()));
             let progress = progress.take();
-            scope.spawn(move || shared.work(own, buckets, Wanted::new(wanted), progress));
+            scope.spawn(move || shared.work(own, buckets, WantedNodes::new(wanted), progress));
         }
     });
     if shared.stop.into_inner() != NEVER {
@@ -86,16 +86,16 @@ pub(super) fn run<G: Graph>(
 }
 
 impl<G: Graph> Shared<'_, G> {
-    /// The part of thread `own`; the one with `progress` tells the others to stop.
+    /// The work of thread `own`; the one with `progress` stops the others on cancellation.
     ///
-    /// Threads own slabs of the graph, so that they seldom touch each other's cells: a node is pushed by whoever
-    /// reaches it, and sorted to its owner when its bucket is taken.
-    fn work(&self, own: usize, mut buckets: Buckets, mut wanted: Wanted, progress: Option<&Progress>) {
+    /// Threads own slabs of the graph, so that they seldom write to each other's cells: a node is pushed by the thread that
+    /// reaches it, and sent to its owner when its bucket is popped.
+    fn work(&self, own: usize, mut buckets: Buckets, mut wanted: WantedNodes, progress: Option<&Progress>) {
         let front = &self.front;
         let Front { graph, cells, width, start, .. } = *front;
         let mut base = width.base(start);
         let mut idle = 0;
-        // A power of two, so that slabs fall to their owners by a mask.
+        // A mask: the number of threads is a power of two.
         let others = self.inboxes.len() as u32 - 1;
         let mut sorted: Vec<Vec<u32>> = vec![Vec::new(); self.inboxes.len()];
         for turn in 0_u32.. {
@@ -124,7 +124,7 @@ impl<G: Graph> Shared<'_, G> {
                 }
             }
             self.barrier.wait();
-            // All see the same from here to the next barrier: what is written there is for later turns.
+            // Until the next barrier all threads see the same state: writes are for later turns.
             if progress.is_some() {
                 self.counts[(turn as usize + 2) % 3].store(0, Ordering::Relaxed);
             }
@@ -149,7 +149,7 @@ impl<G: Graph> Shared<'_, G> {
     }
 }
 
-/// The list behind a lock. No thread panics while it holds one.
+/// Locks a list. No thread panics while it holds the lock.
 fn lock(list: &Mutex<Vec<u32>>) -> MutexGuard<'_, Vec<u32>> {
     list.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,4 +1,4 @@
-//! The result of a search: the tree of least-cost paths, walked back greedily from any node.
+//! The result of a search: the shortest-path forest, walked back from any node by predecessors.
 
 use super::cells::{Cells, slot_mask};
 use crate::graph::{Graph, Node};
@@ -8,7 +8,7 @@ pub struct Plan<'g, G> {
     graph: &'g G,
     cells: Cells,
     settled: usize,
-    /// No cost is above this, in the units of a cell, from the start on.
+    /// Upper bound of all costs, in the units of a cell.
     farthest: u64,
 }
 
@@ -21,26 +21,26 @@ impl<'g, G: Graph> Plan<'g, G> {
         (self.graph, &self.cells, self.farthest)
     }
 
-    /// The graph that was planned over.
+    /// The graph that was searched.
     #[must_use]
     pub fn graph(&self) -> &'g G {
         self.graph
     }
 
-    /// How many nodes have their final cost.
+    /// The number of nodes with final costs.
     #[must_use]
     pub fn settled(&self) -> usize {
         self.settled
     }
 
-    /// Is there a path to `node`? After an early end, only wanted nodes and those cheaper have a final answer.
+    /// Is there a path to `node`? After an early end the answer is final only for wanted nodes and cheaper ones.
     #[must_use]
     pub fn is_reached(&self, node: Node) -> bool {
         self.cells.get(self.graph.cell(node)) != 0
     }
 
-    /// The next node on the way from `node` to its generator, and the weight of the edge; `None` at a generator and
-    /// where nothing was reached.
+    /// The predecessor of `node`, one step nearer to its generator, and the weight of the edge; `None` at a generator or an
+    /// unreached node.
     #[must_use]
     pub fn predecessor(&self, node: Node) -> Option<(Node, u32)> {
         let slot = self.cells.get(self.graph.cell(node)) & slot_mask::<G>();
@@ -50,7 +50,7 @@ impl<'g, G: Graph> Plan<'g, G> {
         Some(self.graph.follow(node, slot - 1))
     }
 
-    /// The nodes from `node` back to its generator, both included. Greedy: each step goes to the predecessor.
+    /// The nodes of the path from `node` back to its generator, both included.
     pub fn path(&self, node: Node) -> impl Iterator<Item = Node> + '_ {
         std::iter::successors(Some(node), |&at| self.predecessor(at).map(|(to, _)| to))
     }
@@ -70,8 +70,8 @@ impl<'g, G: Graph> Plan<'g, G> {
         Some(cost)
     }
 
-    /// For each cell of `nodes`, what `start` gives for its generator, changed by `step` along every edge on the way
-    /// out; nodes that were not reached have `unreached`. Each edge is walked once or twice.
+    /// A fold along each path: for each cell of `nodes`, the value of `start` at its generator, changed by `step` with the
+    /// weight of every edge from there; `unreached` where there is no path. Each edge is walked at most twice.
     #[must_use]
     pub fn carry<T: Copy>(
         &self,
@@ -82,7 +82,7 @@ impl<'g, G: Graph> Plan<'g, G> {
     ) -> Vec<T> {
         let mut values = vec![unreached; self.graph.cells()];
         let mut known = vec![false; self.graph.cells()];
-        let mut way = Vec::new();
+        let mut path = Vec::new();
         for node in nodes.filter(|&node| self.is_reached(node)) {
             let mut at = node;
             let mut value = loop {
@@ -94,10 +94,10 @@ impl<'g, G: Graph> Plan<'g, G> {
                     (values[self.graph.cell(at)], known[self.graph.cell(at)]) = (value, true);
                     break value;
                 };
-                way.push((at, weight));
+                path.push((at, weight));
                 at = to;
             };
-            for (at, weight) in way.drain(..).rev() {
+            for (at, weight) in path.drain(..).rev() {
                 value = step(value, weight);
                 (values[self.graph.cell(at)], known[self.graph.cell(at)]) = (value, true);
             }
@@ -105,13 +105,13 @@ impl<'g, G: Graph> Plan<'g, G> {
         values
     }
 
-    /// The distance field: the least cost of each of `nodes` by cell, `None` where nothing was reached.
+    /// The distance field: the least cost of each of `nodes` by cell, `None` where there is no path.
     #[must_use]
     pub fn costs(&self, nodes: impl Iterator<Item = Node>) -> Vec<Option<u64>> {
         self.carry(nodes, None, |_| Some(0), |cost, weight| cost.map(|c| c + u64::from(weight)))
     }
 
-    /// The nearest generator of each of `nodes` by cell (2007, section 3.4), `None` where nothing was reached.
+    /// The nearest generator of each of `nodes` by cell (2007, section 3.4), `None` where there is no path.
     #[must_use]
     pub fn labels(&self, nodes: impl Iterator<Item = Node>) -> Vec<Option<Node>> {
         self.carry(nodes, None, Some, |label, _| label)

@@ -1,13 +1,13 @@
-//! Lines of equal value on a grid of samples, by marching squares.
+//! Contours of a sampled function by marching squares.
 
 use std::collections::{HashMap, HashSet};
 
 use crate::math::DVec2;
 
-/// The lines where `value` changes sign on a grid of `size` samples, in steps of the grid: what is below 0 is on their left. Closed
-/// ones end where they start. Squares with a value that is not a number are left out.
+/// The zero contours of `value` on a grid of `size` samples, in grid steps, with negative values on their left. Closed contours
+/// end at their first point. Squares with a NaN are left out.
 ///
-/// Where two opposite corners of a square are below 0, both are cut off on their own.
+/// In an ambiguous square, with two opposite negative corners, each corner is cut off separately.
 #[must_use]
 pub fn contours(size: [u32; 2], value: impl Fn(u32, u32) -> f64) -> Vec<Vec<DVec2>> {
     let inside = |x: u32, y: u32| {
@@ -16,20 +16,20 @@ pub fn contours(size: [u32; 2], value: impl Fn(u32, u32) -> f64) -> Vec<Vec<DVec
     };
     trace(size, inside, |from, to| {
         let (a, b) = (value(from[0], from[1]), value(to[0], to[1]));
-        place(from) + (place(to) - place(from)) * (a / (a - b))
+        position(from) + (position(to) - position(from)) * (a / (a - b))
     })
 }
 
-/// The closed lines around the samples that are inside on a grid of `size` samples; all beyond it are outside. `crossing`
-/// tells how far the line is from a sample inside, as a share of the step to the neighbour along the axis that is outside, up
-/// (`true`) or down.
+/// The closed contours around the samples inside on a grid of `size` samples; beyond the grid everything is outside.
+/// `crossing` is the distance of the contour from a sample inside, as a share of the step to its neighbour outside: along an
+/// axis, upwards (`true`) or downwards.
 #[must_use]
 pub fn rings(
     size: [u32; 2],
     is_inside: impl Fn(u32, u32) -> bool,
     crossing: impl Fn([u32; 2], usize, bool) -> f64,
 ) -> Vec<Vec<DVec2>> {
-    // One sample outside on each side: those of the grid begin at 1.
+    // Padded by one sample: those of the grid start at 1.
     let inside = |x: u32, y: u32| {
         let is_there = (1..=size[0]).contains(&x) && (1..=size[1]).contains(&y);
         Some(is_there && is_inside(x - 1, y - 1))
@@ -37,24 +37,24 @@ pub fn rings(
     let lines = trace(size.map(|s| s + 2), inside, |from, to| {
         let axis = usize::from(from[0] == to[0]);
         let share = crossing(from.map(|c| c - 1), axis, to[axis] > from[axis]).clamp(0.02, 0.98);
-        place(from) + (place(to) - place(from)) * share - 1.0
+        position(from) + (position(to) - position(from)) * share - 1.0
     });
-    // The last point is the first.
+    // The last point repeats the first.
     lines.into_iter().map(|mut line| line.split_off(1)).collect()
 }
 
-fn place(at: [u32; 2]) -> DVec2 {
+fn position(at: [u32; 2]) -> DVec2 {
     DVec2::new(at[0].into(), at[1].into())
 }
 
-/// The lines between samples inside and outside; `crossing` is where one passes between a sample inside and a neighbour
-/// outside.
+/// The contours between samples inside and outside, `None` for no value; `crossing` is a contour's point between a sample
+/// inside and a neighbour outside.
 fn trace(
     size: [u32; 2],
     inside: impl Fn(u32, u32) -> Option<bool>,
     crossing: impl Fn([u32; 2], [u32; 2]) -> DVec2,
 ) -> Vec<Vec<DVec2>> {
-    // Each segment leads from one crossing to the next; a crossing is named by its edge: the lower sample and the axis.
+    // The successor of each crossing. A crossing is identified by its edge: the lower sample and the axis.
     let mut next: HashMap<[u32; 3], [u32; 3]> = HashMap::new();
     let mut points: HashMap<[u32; 3], DVec2> = HashMap::new();
     let mut order = Vec::new();
@@ -74,7 +74,7 @@ fn trace(
                     let last = i + (1..4).find(|&j| !is_in[(i + 1 + j) % 4]).unwrap_or(3);
                     let enters = cross(i, corners[(i + 1) % 4], corners[i]);
                     let leaves = cross(last, corners[last % 4], corners[(last + 1) % 4]);
-                    // What is inside is on the left.
+                    // The inside is on the left.
                     next.insert(leaves, enters);
                     order.push(leaves);
                 }
@@ -82,7 +82,7 @@ fn trace(
         }
     }
     let reached: HashSet<[u32; 3]> = next.values().copied().collect();
-    // Open lines from their beginnings, then closed ones from any of their crossings.
+    // Open contours from their first points, then closed ones from any crossing.
     let starts = order.iter().filter(|at| !reached.contains(*at)).chain(&order);
     let mut lines = Vec::new();
     for &start in starts {

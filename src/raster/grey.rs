@@ -1,4 +1,4 @@
-//! A greyscale picture: a painted map.
+//! Greyscale pictures, such as painted maps.
 
 /// Grey values from 0 (black) to 1 (white), row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,7 +9,7 @@ pub struct Grey {
 }
 
 impl Grey {
-    /// A picture of `width` by `height` pixels, or `None` where `values` does not fit or there are none.
+    /// A picture of `width` by `height` pixels, or `None` if `values` has another length or is empty.
     #[must_use]
     pub fn new(width: u32, height: u32, values: Vec<f32>) -> Option<Self> {
         let fits = u64::from(width) * u64::from(height) == values.len() as u64;
@@ -34,20 +34,19 @@ impl Grey {
         f64::from(self.width) / f64::from(self.height)
     }
 
-    /// The value at `(u, v)`, fractions of the width and height from the top left, between pixel centres by bilinear
-    /// interpolation and continued from the edge outside.
+    /// The bilinearly interpolated value at `(u, v)`, fractions of width and height from the top left; clamped to the edge.
     #[must_use]
     pub fn at(&self, u: f64, v: f64) -> f64 {
-        let place = |t: f64, size: u32| {
+        let locate = |t: f64, size: u32| {
             let t = (t * f64::from(size) - 0.5).clamp(0.0, f64::from(size - 1));
             let low = libm::floor(t) as u32;
             (low, (low + 1).min(size - 1), t - f64::from(low))
         };
-        let (x0, x1, fx) = place(u, self.width);
-        let (y0, y1, fy) = place(v, self.height);
+        let (x0, x1, fx) = locate(u, self.width);
+        let (y0, y1, fy) = locate(v, self.height);
         let pixel = |x: u32, y: u32| f64::from(self.values[y as usize * self.width as usize + x as usize]);
-        let mix = |a: f64, b: f64, t: f64| a * (1.0 - t) + b * t;
-        mix(mix(pixel(x0, y0), pixel(x1, y0), fx), mix(pixel(x0, y1), pixel(x1, y1), fx), fy)
+        let lerp = |a: f64, b: f64, t: f64| a * (1.0 - t) + b * t;
+        lerp(lerp(pixel(x0, y0), pixel(x1, y0), fx), lerp(pixel(x0, y1), pixel(x1, y1), fx), fy)
     }
 }
 

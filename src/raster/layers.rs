@@ -1,6 +1,6 @@
-//! Pictures of any number of named channels.
+//! Multi-channel pictures.
 
-use super::Window;
+use super::DataWindow;
 
 /// One channel of a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,11 +9,11 @@ pub struct Channel {
     pub name: String,
     /// A value a pixel, row by row from the top.
     pub values: Vec<f32>,
-    /// May it be stored in 16 bits?
+    /// May it be stored as 16-bit floats?
     pub is_half: bool,
 }
 
-/// Channels of the same size, in linear light where they are colours, with texts about the picture.
+/// A multi-channel picture with metadata; colours are in linear light.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layers {
     /// Pixels in a row.
@@ -24,9 +24,9 @@ pub struct Layers {
     pub channels: Vec<Channel>,
     /// Keyword and text.
     pub texts: Vec<(String, String)>,
-    /// Where these pixels are in the whole picture.
-    pub window: Window,
-    /// CIE xy of red, green, blue and white, where they are told.
+    /// Data window and display window.
+    pub window: DataWindow,
+    /// CIE xy of red, green, blue and white, if they are known.
     pub chromaticities: Option<[f32; 8]>,
 }
 
@@ -37,7 +37,7 @@ impl Layers {
         self.channels.iter().find(|c| c.name == name).map(|c| &c.values[..])
     }
 
-    /// Three channels as pixels.
+    /// Three channels, interleaved; `None` if one is missing.
     #[must_use]
     pub fn pixels(&self, names: [&str; 3]) -> Option<Vec<[f32; 3]>> {
         let [r, g, b] = names.map(|name| self.channel(name));

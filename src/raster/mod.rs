@@ -13,5 +13,5 @@ pub use contour::{contours, rings};
 pub use grey::Grey;
 pub use layers::{Channel, Layers};
 pub use panorama::Panorama;
-pub use plate::{Plate, Samples, Window};
+pub use plate::{DataWindow, Plate, Samples};
 pub use tone::filmic;

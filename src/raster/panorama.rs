@@ -1,10 +1,10 @@
-//! A picture of all directions.
+//! Environment maps.
 
 use super::{Channel, Layers};
 use crate::math::DVec3;
 
-/// An equirectangular picture in linear light: the top row looks up, the left edge and the right look along -x, the
-/// middle along +x, a quarter from the left along -y (z up).
+/// An equirectangular environment map in linear light, z up: the top row is +z, the middle column +x, the left and right edges -x,
+/// the column a quarter from the left -y.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panorama {
     width: u32,
@@ -13,7 +13,7 @@ pub struct Panorama {
 }
 
 impl Panorama {
-    /// A picture of `width` by `height` pixels, or `None` where `pixels` does not fit or there are none.
+    /// A picture of `width` by `height` pixels, or `None` if `pixels` has another length or is empty.
     #[must_use]
     pub fn new(width: u32, height: u32, pixels: Vec<[f32; 3]>) -> Option<Self> {
         let fits = u64::from(width) * u64::from(height) == pixels.len() as u64;
@@ -32,7 +32,7 @@ impl Panorama {
         &self.pixels
     }
 
-    /// Its channels, the light times `strength`.
+    /// Its channels `R G B`, times `strength`.
     #[must_use]
     pub fn layers(&self, strength: f64) -> Layers {
         let channel = |(i, name): (usize, &str)| Channel {
@@ -44,8 +44,7 @@ impl Panorama {
         Layers { width: self.width, height: self.height, channels, ..Layers::default() }
     }
 
-    /// The light from a direction of length 1, between pixel centres by bilinear interpolation; rows go around, columns
-    /// end at the poles.
+    /// The bilinearly interpolated light from the unit vector `d`; rows wrap around, columns are clamped at the poles.
     #[must_use]
     pub fn at(&self, d: DVec3) -> [f64; 3] {
         let u = 0.5 + libm::atan2(d.y, d.x) / std::f64::consts::TAU;
@@ -61,7 +60,7 @@ impl Panorama {
         [0, 1, 2].map(|c| (0..4).map(|i| corners[i][c] * weights[i]).sum())
     }
 
-    /// The mean light from just above the horizon.
+    /// The mean light of the row above the horizon.
     #[must_use]
     pub fn horizon(&self) -> [f64; 3] {
         let row = (self.height / 2).saturating_sub(1) as usize * self.width as usize;
@@ -69,8 +68,8 @@ impl Panorama {
         [0, 1, 2].map(|c| row.iter().map(|p| f64::from(p[c])).sum::<f64>() / row.len() as f64)
     }
 
-    /// The mean light over the cap about a direction of length 1, `cos` the cosine of its half-angle; no pixel counts
-    /// with more than `most`.
+    /// The mean light over the spherical cap about the unit vector `about`, with `cos` the cosine of its half-angle; pixels are
+    /// clamped to `most`.
     #[must_use]
     pub fn mean(&self, about: DVec3, cos: f64, most: f64) -> [f64; 3] {
         let columns: Vec<[f64; 2]> = (0..self.width)
@@ -82,7 +81,7 @@ impl Panorama {
         for y in 0..self.height {
             let rise = std::f64::consts::PI * (0.5 - (f64::from(y) + 0.5) / f64::from(self.height));
             let (z, r) = (libm::sin(rise), libm::cos(rise));
-            // The whole row is farther away than the cap is wide.
+            // The row does not intersect the cap.
             let flat = libm::sqrt((1.0 - about.z * about.z).max(0.0));
             if z * about.z + r * flat < cos {
                 continue;

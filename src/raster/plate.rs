@@ -1,67 +1,67 @@
-//! A photograph to which light is added.
+//! Plates: photographs to which light is added.
 
 use rayon::prelude::*;
 
 use crate::math::DMat3;
 
-/// What a photograph's pixels are stored as: red, green and blue of each, row by row from the top.
+/// The stored samples of a photograph: red, green and blue of each pixel, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Samples {
-    /// Display-referred, 8 bits.
+    /// Display-referred code values of 8 bits.
     Eight(Vec<u8>),
-    /// Display-referred, 16 bits.
+    /// Display-referred code values of 16 bits.
     Sixteen(Vec<u16>),
-    /// Linear light, which may exceed 1.
+    /// Scene-referred linear light, which may exceed 1.
     Linear(Vec<f32>),
 }
 
-/// A photograph as it was stored, and what its numbers mean.
+/// A photograph as stored, with its colour space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plate {
-    /// Pixels in a row, and rows, of what is stored.
+    /// Width and height of the data window, in pixels.
     pub size: [u32; 2],
-    /// The pixels.
+    /// The samples.
     pub samples: Samples,
-    /// The light of each code value of each channel, from 0 to 1, rising; empty where samples are linear.
+    /// The transfer function of each channel: linear light, 0 to 1, by code value, not decreasing; empty for linear samples.
     pub curves: [Vec<f32>; 3],
-    /// From linear Rec. 709 to its own linear colours.
+    /// The matrix, row-major, from linear Rec. 709 to its own linear colour space.
     pub from_rec709: [[f64; 3]; 3],
-    /// The ICC profile that was embedded.
+    /// The embedded ICC profile.
     pub profile: Option<Vec<u8>>,
-    /// Where the stored pixels are in the whole picture (the data window's corner), and the size of that.
-    pub window: Window,
-    /// CIE xy of red, green, blue and white, where the file told.
+    /// Data window and display window.
+    pub window: DataWindow,
+    /// CIE xy of red, green, blue and white, if the file has them.
     pub chromaticities: Option<[f32; 8]>,
 }
 
-/// Where stored pixels are in a picture.
+/// OpenEXR's data window, the stored pixels, within the display window, the picture itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Window {
-    /// Left and top of what is stored.
+pub struct DataWindow {
+    /// Left and top of the data window.
     pub at: [i32; 2],
-    /// Left and top of the picture itself.
+    /// Left and top of the display window.
     pub origin: [i32; 2],
-    /// Width and height of the picture itself; 0 where it is just what is stored.
+    /// Width and height of the display window; 0 where it is the data window.
     pub display: [u32; 2],
 }
 
 impl Plate {
-    /// Width and height of the picture itself.
+    /// Width and height of the display window.
     #[must_use]
     pub fn frame(&self) -> [u32; 2] {
         if self.window.display == [0, 0] { self.size } else { self.window.display }
     }
 
-    /// Left and top of what is stored within the picture itself.
+    /// Left and top of the data window relative to the display window.
     #[must_use]
     pub fn offset(&self) -> [i64; 2] {
         [0, 1].map(|i| i64::from(self.window.at[i]) - i64::from(self.window.origin[i]))
     }
 
-    /// Itself in linear Rec. 709, of which its profile says nothing more.
+    /// The plate converted to linear Rec. 709, without a profile.
     #[must_use]
     pub fn to_rec709(&self) -> Self {
-        // Rows taken for columns both ways.
+        // Transposed on the way in and on the way out.
         let inverse = DMat3::from_cols_array_2d(&self.from_rec709).inverse().to_cols_array_2d();
         let mut light = vec![0.0_f32; self.size[0] as usize * self.size[1] as usize * 3];
         light.par_chunks_mut(3).enumerate().for_each(|(pixel, rgb)| {
@@ -80,7 +80,7 @@ impl Plate {
         }
     }
 
-    /// The largest code value; 0 where samples are linear.
+    /// The largest code value; 0 for linear samples.
     #[must_use]
     pub fn most(&self) -> u32 {
         match self.samples {
@@ -90,7 +90,7 @@ impl Plate {
         }
     }
 
-    /// The light of sample `i`, three a pixel, in the plate's own colours.
+    /// The linear light of sample `i`, three a pixel, in the plate's colour space.
     #[must_use]
     pub fn light(&self, i: usize) -> f32 {
         match &self.samples {
@@ -100,7 +100,7 @@ impl Plate {
         }
     }
 
-    /// The code value, with fraction, that stands for `light` in a channel: the inverse of [`Plate::light`].
+    /// The fractional code value of `light` in a channel, the inverse of [`Plate::light`].
     #[must_use]
     pub fn encode(&self, channel: usize, light: f32) -> f64 {
         let curve = &self.curves[channel];
@@ -127,7 +127,7 @@ mod tests {
             curves: [curve.clone(), curve.clone(), curve],
             from_rec709: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
             profile: None,
-            window: Window::default(),
+            window: DataWindow::default(),
             chromaticities: None,
         };
         assert_eq!(plate.frame(), [86, 1]);

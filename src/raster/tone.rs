@@ -1,10 +1,10 @@
 //! The tone curve of finished pictures.
 
-/// Light up to this is left as it is; what is above bends towards white.
+/// The value at which the shoulder starts.
 const SHOULDER: f64 = 0.8;
 
-/// A filmic shoulder: highlights bend softly to white instead of being cut off, and everything else keeps its value,
-/// so that renderers without such a curve show the same but for highlights.
+/// A tone curve with a filmic shoulder: highlights roll off exponentially towards 1, lower values are unchanged, so that renderers
+/// without it agree but for highlights.
 #[must_use]
 pub fn filmic(linear: f64) -> f64 {
     if linear <= SHOULDER {

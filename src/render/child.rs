@@ -1,4 +1,4 @@
-//! Outside programs that end when we do.
+//! Child processes that are killed with us.
 
 use std::io::{self, Read};
 use std::process::{Child, ExitStatus};
@@ -8,22 +8,22 @@ use std::time::Duration;
 
 use crate::math::{Cancelled, Progress};
 
-/// How often we look whether to stop.
+/// Interval of the tests for cancellation.
 pub(super) const POLL: Duration = Duration::from_millis(50);
 
-/// A child that does not outlive us.
+/// A child process that is killed on drop.
 pub(super) struct Watched(pub Child);
 
 impl Drop for Watched {
     fn drop(&mut self) {
-        // Both fail only when it has ended already.
+        // Both fail only if it has exited.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
 }
 
 impl Watched {
-    /// Waits for its end.
+    /// Waits for its exit.
     pub fn wait(&mut self, progress: &Progress) -> Result<io::Result<ExitStatus>, Cancelled> {
         loop {
             progress.check()?;
@@ -36,7 +36,7 @@ impl Watched {
     }
 }
 
-/// The lines of a stream, split at returns as at line ends, from a thread of their own.
+/// The lines of a stream, split at carriage returns and line feeds, read by a thread of its own.
 pub(super) fn listen(stream: Option<impl Read + Send + 'static>) -> Receiver<String> {
     let (send, lines) = channel();
     if let Some(stream) = stream {
@@ -55,7 +55,7 @@ pub(super) fn listen(stream: Option<impl Read + Send + 'static>) -> Receiver<Str
             }
             let rest = String::from_utf8_lossy(&line).trim().to_owned();
             if !rest.is_empty() {
-                // Nobody may listen any more.
+                // The receiver may be gone.
                 let _ = send.send(rest);
             }
         });

@@ -1,4 +1,4 @@
-//! Driving outside programs: they are started, watched, and stopped with us.
+//! External renderers as child processes.
 
 mod child;
 mod povray;

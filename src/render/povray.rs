@@ -8,25 +8,25 @@ use std::sync::mpsc::RecvTimeoutError;
 use super::child::{POLL, Watched, listen};
 use crate::math::{Cancelled, Progress};
 
-/// Lines of POV-Ray's own words that an error repeats.
+/// Lines of POV-Ray's output in an error message.
 const WORDS: usize = 12;
 
-/// How POV-Ray is to render.
+/// The parameters of a run of POV-Ray.
 #[derive(Clone, Debug)]
 pub struct Povray {
     /// Size of the picture, in pixels.
     pub size: [u32; 2],
-    /// The part that is rendered: left, top, width, height, in pixels; the rest stays black.
+    /// The crop window: left, top, width, height, in pixels; the rest stays black.
     pub crop: [u32; 4],
-    /// Samples along each side of a pixel, 1 for its middle alone.
+    /// Samples along each side of a pixel; 1 for its centre only.
     pub samples: u32,
-    /// What the scene declares on the command line, as `Name=1`.
+    /// A declaration on the command line, such as `Name=1`.
     pub declare: Option<String>,
-    /// Threads; `None` leaves the choice to POV-Ray.
+    /// Number of threads; `None` is POV-Ray's default.
     pub threads: Option<usize>,
 }
 
-/// What a run said.
+/// The output of a successful run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Rendered {
     /// POV-Ray's warnings.
@@ -36,23 +36,23 @@ pub struct Rendered {
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
 pub enum PovrayError {
-    /// The program is not there.
+    /// The program is not installed.
     #[error(
         "povray was not found: install it (Debian: apt-get install povray povray-includes), or export the scene with `export --to pov`"
     )]
     Missing,
-    /// The program could not be started or watched.
+    /// The program could not be started or waited for.
     #[error("povray could not be run: {0}")]
     Run(#[from] io::Error),
     /// The program failed.
     #[error("povray failed ({status}):\n{words}")]
     Failed {
-        /// How it ended.
+        /// Its exit status.
         status: String,
-        /// Its own words, with the file and line where it gives them.
+        /// Its output, with file and line if given.
         words: String,
     },
-    /// Stopped by its [`Progress`]; the child was ended.
+    /// Cancelled by its [`Progress`]; the child was killed.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -122,7 +122,7 @@ impl Povray {
     }
 }
 
-/// The share done that a line such as `Rendered 1024 of 19200 pixels (5%)` tells.
+/// The share done in a line such as `Rendered 1024 of 19200 pixels (5%)`.
 fn share_done(line: &str) -> Option<f64> {
     let mut words = line.strip_prefix("Rendered ")?.split_whitespace();
     let done: f64 = words.next()?.parse().ok()?;
@@ -130,7 +130,7 @@ fn share_done(line: &str) -> Option<f64> {
     (all > 0.0).then(|| done / all)
 }
 
-/// From the first line that tells of an error on, or else the last lines.
+/// The output from the first line with an error on, otherwise the last lines.
 fn last_words(said: &[String]) -> String {
     let first = said
         .iter()

@@ -8,7 +8,7 @@ use std::sync::mpsc::RecvTimeoutError;
 use super::child::{POLL, Watched, listen};
 use crate::math::{Cancelled, Progress};
 
-/// Lines of a renderer's own words that an error repeats.
+/// Lines of a renderer's output in an error message.
 const WORDS: usize = 12;
 
 /// A renderer that reads RIB.
@@ -23,23 +23,23 @@ pub enum RibRenderer {
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
 pub enum RibError {
-    /// The program is not there.
+    /// The program is not installed.
     #[error("{0} was not found: install it and put it on the PATH, or export the scene with `export --to rib`")]
     Missing(&'static str),
-    /// The program could not be started or watched.
+    /// The program could not be started or waited for.
     #[error("{0} could not be run: {1}")]
     Run(&'static str, io::Error),
-    /// The program failed, whatever its exit code says.
+    /// The program failed, whatever its exit status.
     #[error("{program} failed ({how}):\n{words}")]
     Failed {
         /// Its name.
         program: &'static str,
-        /// What is wrong.
+        /// How it failed.
         how: String,
-        /// Its own words.
+        /// Its output.
         words: String,
     },
-    /// Stopped by its [`Progress`]; the child was ended.
+    /// Cancelled by its [`Progress`]; the child was killed.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -54,10 +54,10 @@ impl RibRenderer {
         }
     }
 
-    /// Renders the RIB file `scene` in `folder`, which makes the file `picture` there.
+    /// Renders the RIB file `scene` in `folder`, which writes the file `picture` there.
     ///
-    /// Both programs end with code 0 after most errors: a run is good only where nothing was said, the code is 0 and the
-    /// picture is there.
+    /// Both programs exit with 0 after most errors: a run succeeds only if it wrote nothing, its status is 0 and the picture
+    /// exists.
     ///
     /// # Errors
     /// [`RibError`].

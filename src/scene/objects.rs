@@ -178,7 +178,7 @@ fn leaf(shape: &str, fold: f64, folder: &Folder) -> Result<Mesh, String> {
         own.map_err(|_| unknown("leaf", shape, leaf_names().iter()))?
     };
     let wrong = |error: String| format!("cannot use `{shape}` as a leaf: {error}");
-    let page = decode_sketch(&bytes).map_err(wrong)?;
+    let page = decode_sketch(&bytes).map_err(|e| wrong(e.to_string()))?;
     let outline = page.lines.iter().find(|(_, is_closed)| *is_closed).map(|(line, _)| line);
     let outline = outline.ok_or_else(|| wrong("it has no closed outline".to_owned()))?;
     let outline: Vec<DVec2> = outline.iter().map(|p| DVec2::new(p.x * page.aspect, p.y)).collect();

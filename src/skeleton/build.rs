@@ -1,4 +1,4 @@
-//! Paths become a forest.
+//! The skeleton: the union of paths as a forest.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasher, Hash};
@@ -10,27 +10,26 @@ use crate::math::DVec3;
 /// One node of a skeleton.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SkeletonNode {
-    /// Where it is, in scene units.
+    /// Its position, in scene units.
     pub position: DVec3,
-    /// The node before it on the way from the generator; `None` at a generator.
+    /// The node before it on the path from the generator; `None` at a generator.
     pub parent: Option<u32>,
     /// Least path cost from the generator.
     pub cost: f64,
-    /// Cost of the whole way from where growth began, through the steps that this one grew from: the order in which
-    /// nodes grow.
+    /// Total path cost through all earlier steps from which this one grew: the order in which nodes grow.
     pub age: f64,
-    /// Radius of the limb here; 0 until a width is given.
+    /// Radius of the limb, in scene units; 0 until a width is applied.
     pub radius: f64,
-    /// The limb that it belongs to ([`Skeleton::number_branches`]).
+    /// The number of its limb ([`Skeleton::number_branches`]).
     pub branch: u32,
-    /// The round of growth that made it.
+    /// The round in which it grew.
     pub level: u16,
     /// The class of the thickest path through it, as an index of [`Skeleton::classes`].
     pub class: u16,
 }
 
 impl SkeletonNode {
-    /// A node without radius, of the first limb and level; its age is its cost.
+    /// A node without radius, of limb 0 and level 0; its age is its cost.
     #[must_use]
     pub fn new(position: DVec3, parent: Option<u32>, cost: f64, class: u16) -> Self {
         Self { position, parent, cost, age: cost, radius: 0.0, branch: 0, level: 0, class }
@@ -44,19 +43,18 @@ pub struct Path {
     pub end: u32,
     /// The path's class, as an index of [`Skeleton::classes`].
     pub class: u16,
-    /// The node that it was planned from: the root of its graph.
+    /// The generator from which it was planned: the root of its graph.
     pub root: u32,
-    /// What tells it from all other paths, whatever else grows: the random numbers of what grows on from its end depend on
-    /// it.
+    /// Its identity, independent of other paths: the key of the random numbers of growth from its end.
     pub name: u64,
-    /// The way of the last branch of the limb that it carries on; zero where there is none.
+    /// The direction of the last branch of the limb that it continues; zero where there is none.
     pub last: DVec3,
 }
 
-/// The nodes of a path that no path before it has.
+/// The nodes of a path that no earlier path contains.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Limb {
-    /// The node of an earlier path where it starts, and the index of that path; `None` where it starts at a root.
+    /// The node of an earlier path at which it starts, and the index of that path; `None` where it starts at a root.
     pub leaves: Option<(u32, u32)>,
     /// Its own nodes, from the first to its end.
     pub nodes: Vec<u32>,
@@ -80,8 +78,8 @@ impl Skeleton {
         Self { classes, ..Self::default() }
     }
 
-    /// Adds the path given from its endpoint back to a generator: each node, its position and its cost. Paths that
-    /// meet share their nodes; `known` remembers which are there.
+    /// Adds a path, given from its endpoint back to a generator as node, position and cost. Paths that meet share their nodes:
+    /// `known` maps graph nodes to skeleton nodes.
     pub fn add_path<K: Copy + Eq + Hash, S: BuildHasher>(
         &mut self,
         known: &mut HashMap<K, u32, S>,
@@ -107,7 +105,7 @@ impl Skeleton {
         self.paths.extend(parent.map(|end| Path { end, class, root: 0, name, ..Path::default() }));
     }
 
-    /// Gives every tree of the forest an age and a largest radius, told by `start` from its root.
+    /// Offsets the ages and limits the radii of every tree by the age and radius that `start` gives for its root.
     pub fn start_from(&mut self, start: impl Fn(&SkeletonNode) -> (f64, f64)) {
         let mut starts: Vec<(f64, f64)> = Vec::with_capacity(self.nodes.len());
         for node in &mut self.nodes {
@@ -118,7 +116,7 @@ impl Skeleton {
         }
     }
 
-    /// The same where the limb of each node is the index of a path that has a root.
+    /// [`Skeleton::start_from`] where the limb number of each node is the index of a path, by that path's root.
     pub fn start_limbs_from(&mut self, start: impl Fn(&SkeletonNode) -> (f64, f64) + Sync) {
         let nodes = &self.nodes;
         let starts: Vec<(f64, f64)> = self.paths.par_iter().map(|path| start(&nodes[path.root as usize])).collect();
@@ -129,7 +127,7 @@ impl Skeleton {
         });
     }
 
-    /// What had grown at this age: younger nodes are left out, and the last segment of each limb is as long as it was.
+    /// The skeleton at the age `age`: later nodes are omitted, and the last segment of each limb is cut at that age.
     #[must_use]
     pub fn until(&self, age: f64) -> Self {
         let mut grown = Self { classes: self.classes.clone(), ..Self::default() };
@@ -165,7 +163,7 @@ impl Skeleton {
         grown
     }
 
-    /// Names the tree's root as that of every path.
+    /// Sets the root of every path to the root of its tree.
     pub fn root_paths(&mut self) {
         let mut roots: Vec<u32> = Vec::with_capacity(self.nodes.len());
         for (i, node) in (0..).zip(&self.nodes) {
@@ -176,8 +174,8 @@ impl Skeleton {
         }
     }
 
-    /// The ends of paths, once each, with the way to each from the root of its graph: all of them, or those that no other
-    /// path was planned from.
+    /// The distinct ends of paths, with the vector to each from the root of its graph: every one, or those only from which no
+    /// other path was planned.
     pub fn ends(&self, every: bool) -> impl Iterator<Item = (u32, DVec3)> + '_ {
         self.end_paths(every).map(|path| {
             let Path { end, root, .. } = self.paths[path];
@@ -185,7 +183,7 @@ impl Skeleton {
         })
     }
 
-    /// The paths whose ends those are, by index.
+    /// The indices of the paths of [`Skeleton::ends`].
     pub fn end_paths(&self, every: bool) -> impl Iterator<Item = usize> + '_ {
         let mut is_kept = vec![true; self.nodes.len()];
         if !every {
@@ -194,14 +192,14 @@ impl Skeleton {
         (0..self.paths.len()).filter(move |&path| std::mem::replace(&mut is_kept[self.paths[path].end as usize], false))
     }
 
-    /// The way of the segment that ends at this node, of length 1; none at a root.
+    /// The direction of the segment that ends at this node; `None` at a root.
     #[must_use]
     pub fn way_into(&self, node: u32) -> Option<DVec3> {
         let SkeletonNode { position, parent, .. } = self.nodes[node as usize];
         (position - self.nodes[parent? as usize].position).try_normalize()
     }
 
-    /// What each path adds to those before it.
+    /// The limb that each path adds to the earlier ones.
     #[must_use]
     pub fn limbs(&self) -> Vec<Limb> {
         let mut owner: Vec<Option<u32>> = vec![None; self.nodes.len()];
@@ -223,13 +221,12 @@ impl Skeleton {
         self.paths.iter().zip(0..).map(limb).collect()
     }
 
-    /// The nodes with their parents, roots left out.
+    /// The segments, as parent and node.
     pub fn segments(&self) -> impl Iterator<Item = (&SkeletonNode, &SkeletonNode)> {
         self.nodes.iter().filter_map(|node| node.parent.map(|p| (&self.nodes[p as usize], node)))
     }
 
-    /// For each node the child that continues its limb: the thickest, then the one whose paths cost most, then the
-    /// first.
+    /// The child that continues the limb of each node: the thickest, then the one whose paths cost most, then the first.
     #[must_use]
     pub fn main_children(&self) -> Vec<Option<u32>> {
         let mut far: Vec<f64> = self.nodes.iter().map(|n| n.cost).collect();
@@ -253,8 +250,8 @@ impl Skeleton {
         main
     }
 
-    /// Gives each limb a number, from 0 in the order of its first node: at a fork the main child goes on, and every
-    /// other child starts a limb of its own.
+    /// Numbers the limbs from 0 in the order of their first nodes: at a fork the main child continues the limb, every other
+    /// child starts a new one.
     pub fn number_branches(&mut self) {
         let main = self.main_children();
         let mut next = 0;
@@ -269,7 +266,7 @@ impl Skeleton {
         }
     }
 
-    /// How many children each node has.
+    /// The number of children of each node.
     #[must_use]
     pub fn child_counts(&self) -> Vec<u32> {
         let mut counts = vec![0; self.nodes.len()];

@@ -1,15 +1,15 @@
-//! Box-counting dimension: how a figure's size in boxes grows as boxes shrink.
+//! Box-counting (Minkowski) dimension.
 
 use std::collections::HashSet;
 
 use super::Skeleton;
 use crate::math::DVec3;
 
-/// Boxes from an eighth of the whole down to one of 128: smaller ones see single limbs, which are lines.
+/// log2 of the boxes along the side, 8 to 128: smaller boxes would resolve single limbs, which are lines.
 const SCALES: std::ops::RangeInclusive<u32> = 3..=7;
 
-/// The box-counting dimension of `skeletons` together: 1 for a line, 2 for what fills the plane. Photographed lightning
-/// has about 1.34. It is 0 where there is nothing to measure.
+/// The box-counting dimension of the union of `skeletons`: 1 for a line, 2 for a filled plane, about 1.34 for photographed
+/// lightning; 0 for an empty one.
 #[must_use]
 pub fn dimension(skeletons: &[&Skeleton]) -> f64 {
     let nodes = || skeletons.iter().flat_map(|s| &s.nodes).map(|n| n.position);
@@ -25,17 +25,17 @@ pub fn dimension(skeletons: &[&Skeleton]) -> f64 {
             let edge = size / boxes;
             let mut met: HashSet<[i64; 3]> = HashSet::new();
             for (from, to) in skeletons.iter().flat_map(|s| s.segments()) {
-                let way = to.position - from.position;
-                let steps = libm::ceil(way.length() / edge * 8.0).max(1.0) as u32;
+                let segment = to.position - from.position;
+                let steps = libm::ceil(segment.length() / edge * 8.0).max(1.0) as u32;
                 for step in 0..=steps {
-                    let p = from.position + way * (f64::from(step) / f64::from(steps)) - low;
+                    let p = from.position + segment * (f64::from(step) / f64::from(steps)) - low;
                     met.insert((p / edge).to_array().map(|c| libm::floor(c) as i64));
                 }
             }
             (libm::log(boxes), libm::log((met.len().max(1)) as f64))
         })
         .collect();
-    // The slope of the line of least squares.
+    // The slope of the least-squares line.
     let count = points.len() as f64;
     let mean = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / count, y + p.1 / count));
     let over = points.iter().map(|p| (p.0 - mean.0) * (p.1 - mean.1)).sum::<f64>();

@@ -1,4 +1,4 @@
-//! What figures claim of a skeleton, as numbers.
+//! Measurements of a skeleton's form.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::{Orders, Path, Skeleton, dimension};
 use crate::math::{DVec3, Stream};
 
-/// Numbers that describe a skeleton's form.
+/// Measurements of a skeleton's form.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Measurement {
     /// Number of nodes.
@@ -17,7 +17,7 @@ pub struct Measurement {
     pub endpoints: usize,
     /// Total length of all segments, in scene units.
     pub length: f64,
-    /// Mean over the paths of their length over the straight distance between their ends: 1 is straight.
+    /// Mean over the paths of arc length over chord length: 1 is straight.
     pub tortuosity: f64,
     /// Mean distance of the segments from the upright line through the root, weighted by length, in scene units.
     pub offset: f64,
@@ -41,20 +41,20 @@ pub struct Measurement {
     pub dimension: f64,
     /// How many directions hold at least a hundredth of the length each, by tens of degrees, seen along z.
     pub directions: usize,
-    /// Standard deviation over mean of the lengths of ways from a root to an end from which nothing grew on.
+    /// Coefficient of variation of the path lengths from a root to an end from which nothing grew.
     pub length_variation: f64,
-    /// How much room there is between ends: the mean distance of the middle between two of them from the nearest end, over
-    /// the mean distance of two. Where ends fill a volume it is small, where they stand in clusters large.
+    /// Mean distance of the midpoint of two ends from the nearest end, over the mean distance of two ends: small where ends
+    /// fill a volume, large where they form clusters.
     pub gaps: f64,
-    /// How far apart ends and the roots of their graphs are, each level over the one before (geometric mean).
+    /// Mean distance between ends and the roots of their graphs, each level over the one before (geometric mean).
     pub level_ratio: f64,
-    /// Mean place of the ends along x, as a share of the greatest distance from the upright line through the root.
+    /// Mean x of the ends, as a share of the greatest distance from the upright line through the root.
     pub lean: f64,
-    /// The highest order of Strahler.
+    /// The Strahler number.
     pub strahler: usize,
-    /// Number of streams of an order over that of the next (Horton; geometric mean).
+    /// Horton's bifurcation ratio (geometric mean).
     pub bifurcation: f64,
-    /// Mean length of a stream of the first order: a twig, in scene units.
+    /// Mean length of a stream of order 1, a twig, in scene units.
     pub twig: f64,
 }
 
@@ -64,46 +64,20 @@ pub fn measure(skeleton: &Skeleton) -> Measurement {
     measure_from(skeleton, None)
 }
 
-/// [`measure`] from `foot`, where the plant starts that `skeleton` belongs to.
+/// [`measure`] from `foot`, the root of the plant of which `skeleton` is a part.
 #[must_use]
 pub fn measure_from(skeleton: &Skeleton, foot: Option<DVec3>) -> Measurement {
     let Some(root) = foot.or(skeleton.nodes.first().map(|n| n.position)) else {
         return Measurement::default();
     };
-    let is_flat = skeleton.nodes.iter().all(|n| n.position.z == root.z);
-    let height = |p: DVec3| if is_flat { p.y - root.y } else { p.z - root.z };
-    let offset = |p: DVec3| {
-        let d = p - root;
-        if is_flat { d.x.abs() } else { libm::sqrt(d.x * d.x + d.y * d.y) }
-    };
-    let mut along = vec![0.0; skeleton.nodes.len()];
-    let mut start: Vec<u32> = (0..skeleton.nodes.len() as u32).collect();
-    let (mut length, mut offsets, mut heights) = (0.0, 0.0, 0.0);
-    for (i, node) in skeleton.nodes.iter().enumerate() {
-        let Some(p) = node.parent.map(|p| p as usize) else { continue };
-        let from = skeleton.nodes[p].position;
-        let step = (node.position - from).length();
-        let middle = (node.position + from) * 0.5;
-        along[i] = along[p] + step;
-        start[i] = start[p];
-        length += step;
-        offsets += step * offset(middle);
-        heights += step * height(middle);
-    }
+    let axis = VerticalAxis { root, is_flat: skeleton.nodes.iter().all(|n| n.position.z == root.z) };
+    let (height, offset) = (|p: DVec3| axis.height(p), |p: DVec3| axis.offset(p));
+    let Lengths { along, start, length, offsets, heights } = Lengths::new(skeleton, &axis);
     let most =
         |f: &dyn Fn(DVec3) -> f64| skeleton.nodes.iter().map(|n| f(n.position)).fold(f64::MIN_POSITIVE, f64::max);
-    // Of what grows downwards too.
+    // Absolute, for what grows downwards.
     let top = most(&|p| height(p).abs());
-    let ratios: Vec<f64> = skeleton
-        .paths
-        .iter()
-        .filter_map(|path| {
-            let end = path.end as usize;
-            let from = skeleton.nodes[start[end] as usize].position;
-            let straight = (skeleton.nodes[end].position - from).length();
-            (straight > 0.0).then(|| along[end] / straight)
-        })
-        .collect();
+    let ratios = tortuosities(skeleton, &along, &start);
     let children = skeleton.child_counts();
     let forks: Vec<usize> = (0..children.len()).filter(|&i| children[i] > 1).collect();
     let ends = || skeleton.paths.iter().map(|path| path.end as usize);
@@ -116,15 +90,15 @@ pub fn measure_from(skeleton: &Skeleton, foot: Option<DVec3>) -> Measurement {
     let mean = |sum: f64, count: usize| if count == 0 { 0.0 } else { sum / count as f64 };
     let share = |sum: f64| if length > 0.0 { sum / length } else { 0.0 };
     let orders = Orders::new(skeleton);
-    let places: Vec<DVec3> = ends().map(|i| skeleton.nodes[i].position).collect();
-    let widest = places.iter().map(|&p| offset(p)).fold(f64::MIN_POSITIVE, f64::max);
-    let ways: Vec<f64> = skeleton.ends(false).map(|(end, _)| along[end as usize]).collect();
+    let positions: Vec<DVec3> = ends().map(|i| skeleton.nodes[i].position).collect();
+    let widest = positions.iter().map(|&p| offset(p)).fold(f64::MIN_POSITIVE, f64::max);
+    let lengths: Vec<f64> = skeleton.ends(false).map(|(end, _)| along[end as usize]).collect();
     Measurement {
         directions: directions(skeleton, length),
-        length_variation: variation(&ways),
-        gaps: gaps(&places),
+        length_variation: variation(&lengths),
+        gaps: gaps(&positions),
         level_ratio: level_ratio(skeleton),
-        lean: mean(places.iter().map(|p| p.x - root.x).sum(), places.len()) / widest,
+        lean: mean(positions.iter().map(|p| p.x - root.x).sum(), positions.len()) / widest,
         strahler: orders.highest(),
         bifurcation: orders.bifurcation(),
         twig: orders.lengths.first().copied().unwrap_or(0.0),
@@ -145,7 +119,72 @@ pub fn measure_from(skeleton: &Skeleton, foot: Option<DVec3>) -> Measurement {
     }
 }
 
-/// Standard deviation over mean; 0 of nothing.
+/// The upright line through the root.
+struct VerticalAxis {
+    root: DVec3,
+    /// Is the skeleton in the plane, with y up?
+    is_flat: bool,
+}
+
+impl VerticalAxis {
+    /// Height above the root.
+    fn height(&self, p: DVec3) -> f64 {
+        if self.is_flat { p.y - self.root.y } else { p.z - self.root.z }
+    }
+
+    /// Distance from the line.
+    fn offset(&self, p: DVec3) -> f64 {
+        let d = p - self.root;
+        if self.is_flat { d.x.abs() } else { libm::sqrt(d.x * d.x + d.y * d.y) }
+    }
+}
+
+/// Sums over the segments.
+struct Lengths {
+    /// Arc length from the root of its tree to each node.
+    along: Vec<f64>,
+    /// The root of each node's tree.
+    start: Vec<u32>,
+    /// The total length.
+    length: f64,
+    /// Integral of the offset over the length.
+    offsets: f64,
+    /// Integral of the height over the length.
+    heights: f64,
+}
+
+impl Lengths {
+    fn new(skeleton: &Skeleton, axis: &VerticalAxis) -> Self {
+        let mut along = vec![0.0; skeleton.nodes.len()];
+        let mut start: Vec<u32> = (0..skeleton.nodes.len() as u32).collect();
+        let (mut length, mut offsets, mut heights) = (0.0, 0.0, 0.0);
+        for (i, node) in skeleton.nodes.iter().enumerate() {
+            let Some(p) = node.parent.map(|p| p as usize) else { continue };
+            let from = skeleton.nodes[p].position;
+            let step = (node.position - from).length();
+            let middle = (node.position + from) * 0.5;
+            along[i] = along[p] + step;
+            start[i] = start[p];
+            length += step;
+            offsets += step * axis.offset(middle);
+            heights += step * axis.height(middle);
+        }
+        Self { along, start, length, offsets, heights }
+    }
+}
+
+/// Arc length over chord length of each path that has a chord.
+fn tortuosities(skeleton: &Skeleton, along: &[f64], start: &[u32]) -> Vec<f64> {
+    let ratio = |path: &Path| {
+        let end = path.end as usize;
+        let from = skeleton.nodes[start[end] as usize].position;
+        let chord = (skeleton.nodes[end].position - from).length();
+        (chord > 0.0).then(|| along[end] / chord)
+    };
+    skeleton.paths.iter().filter_map(ratio).collect()
+}
+
+/// The coefficient of variation, standard deviation over mean; 0 of an empty list.
 fn variation(numbers: &[f64]) -> f64 {
     let count = numbers.len().max(1) as f64;
     let mean = numbers.iter().sum::<f64>() / count;
@@ -153,32 +192,35 @@ fn variation(numbers: &[f64]) -> f64 {
     if mean > 0.0 { libm::sqrt(square) / mean } else { 0.0 }
 }
 
+/// [`Measurement::directions`].
 fn directions(skeleton: &Skeleton, length: f64) -> usize {
     let mut bins = [0.0; 36];
     for (from, to) in skeleton.segments() {
-        let way = to.position - from.position;
-        let turn = libm::atan2(way.y, way.x) / std::f64::consts::TAU + 1.0;
-        bins[libm::floor(turn * 36.0 + 0.5) as usize % 36] += way.length();
+        let segment = to.position - from.position;
+        let turn = libm::atan2(segment.y, segment.x) / std::f64::consts::TAU + 1.0;
+        bins[libm::floor(turn * 36.0 + 0.5) as usize % 36] += segment.length();
     }
     bins.iter().filter(|&&sum| sum > length * 0.01).count()
 }
 
-/// Pairs of ends that [`gaps`] looks at.
+/// Pairs of ends sampled by [`gaps`].
 const PAIRS: usize = 500;
 
-fn gaps(places: &[DVec3]) -> f64 {
+/// [`Measurement::gaps`].
+fn gaps(ends: &[DVec3]) -> f64 {
     let mut random = Stream::new(0, "gaps");
     let (mut room, mut apart) = (0.0, 0.0);
-    for _ in 0..if places.len() > 1 { PAIRS } else { 0 } {
-        let [a, b]: [DVec3; 2] = std::array::from_fn(|_| places[random.random_range(0..places.len())]);
+    for _ in 0..if ends.len() > 1 { PAIRS } else { 0 } {
+        let [a, b]: [DVec3; 2] = std::array::from_fn(|_| ends[random.random_range(0..ends.len())]);
         let middle = (a + b) * 0.5;
-        let nearest = places.iter().map(|p| p.distance_squared(middle)).fold(f64::INFINITY, f64::min);
+        let nearest = ends.iter().map(|p| p.distance_squared(middle)).fold(f64::INFINITY, f64::min);
         room += libm::sqrt(nearest);
         apart += a.distance(b);
     }
     if apart > 0.0 { room / apart } else { 0.0 }
 }
 
+/// [`Measurement::level_ratio`].
 fn level_ratio(skeleton: &Skeleton) -> f64 {
     let mut reach: BTreeMap<u16, (f64, f64)> = BTreeMap::new();
     for path in &skeleton.paths {

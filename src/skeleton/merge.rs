@@ -1,13 +1,13 @@
-//! Paths that share a trunk are one trunk: limbs that run side by side within each other's thickness are joined.
+//! Merging of limbs that run side by side within each other's thickness.
 
 use super::plant::Plant;
 
-/// A limb's nodes that are searched for the place nearest to a neighbour's node.
+/// Nodes of the main limb, from the last match on, that are searched for the nearest.
 const AHEAD: usize = 8;
 
 impl Plant {
-    /// From every fork on, nodes of a side limb that touch the main one (nearer than `share` of both radii) are taken into
-    /// it; what grew from them grows from it. Ends of paths stay.
+    /// From every fork on, merges nodes of a side limb into the main one while they are nearer to it than `share` of both radii;
+    /// their children become children of the main limb's nodes. Ends of paths are kept.
     pub(super) fn merge(&mut self, share: f64) {
         let main = self.main_children();
         let mut children: Vec<Vec<u32>> = vec![Vec::new(); self.nodes.len()];
@@ -22,7 +22,7 @@ impl Plant {
             is_end[end.path.root as usize] = true;
         }
         let mut is_gone = vec![false; self.nodes.len()];
-        // From the root outwards: what a limb takes in may be taken in by the next.
+        // From the root outwards: a merged limb may be merged again.
         let mut forks: Vec<u32> =
             (0..self.nodes.len() as u32).filter(|&i| self.nodes[i as usize].node.parent.is_none()).collect();
         while let Some(fork) = forks.pop() {
@@ -34,7 +34,7 @@ impl Plant {
             let mut kept: Vec<u32> = main[fork as usize].into_iter().collect();
             while let Some((node, from)) = side.pop() {
                 let p = self.nodes[node as usize].node.position;
-                // The nearest place along the main limb, from where the last one was on.
+                // The nearest node of the main limb, from the last match on.
                 let chain = std::iter::successors(Some(from), |&at| main[at as usize]).take(AHEAD);
                 let distance = |at: u32| self.nodes[at as usize].node.position.distance(p);
                 let nearest = chain.fold(from, |best, at| if distance(at) < distance(best) { at } else { best });
@@ -55,7 +55,7 @@ impl Plant {
             children[fork as usize].clone_from(&kept);
             forks.extend(kept);
         }
-        // Nodes that are gone keep no children: their order does not matter.
+        // Merged nodes have no children left, so the order of the others is unaffected.
         let stays: Vec<u32> = (0..self.nodes.len() as u32).filter(|&i| !is_gone[i as usize]).collect();
         self.keep(&stays);
         self.reorder();

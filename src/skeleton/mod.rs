@@ -1,6 +1,6 @@
 //! Skeletons: the union of paths as a forest of nodes with costs and radii.
 //!
-//! Later stages need never handle a loop or a dangling parent: parents precede their children, positions are finite,
+//! Later stages need never handle a cycle or a dangling parent: parents precede their children, positions are finite,
 //! radii are finite and above 0 once a width has been given.
 
 mod build;
@@ -11,6 +11,7 @@ mod merge;
 mod order;
 mod plant;
 mod relate;
+mod resample;
 mod smooth;
 mod spline;
 mod strands;
@@ -22,9 +23,9 @@ pub use dimension::dimension;
 pub use form::{Form, FormSpec};
 pub use measure::{Measurement, measure, measure_from};
 pub use order::Orders;
-pub use plant::{Part, Plant};
+pub use plant::{Plant, PlantPart};
 pub use relate::{apart, crossings, floating, nearest, shared_ends};
 pub use smooth::smooth;
 pub use spline::{bend, overlap};
 pub use symmetry::SymmetrySpec;
-pub use width::{ByLength, PerClass, Pipe, Taper, Width};
+pub use width::{ByLength, PerClass, Pipe, Taper, Width, WidthError};

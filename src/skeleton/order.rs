@@ -1,23 +1,23 @@
-//! Stream orders of Horton (1945) and Strahler (1957): how a tree branches.
+//! Stream orders of Horton (1945) and Strahler (1957).
 
 use super::Skeleton;
 
-/// How the limbs of a skeleton branch.
+/// The streams of a skeleton by Strahler order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Orders {
-    /// How many streams of each order there are, from order 1 on: a stream goes from where two of the order below meet to
-    /// where it meets one of its own order or a higher one.
+    /// The number of streams of each order, from order 1 on. A stream extends from the confluence of two streams of the order
+    /// below to that with one of its own or a higher order.
     pub streams: Vec<usize>,
     /// Mean length of the streams of each order, in scene units.
     pub lengths: Vec<f64>,
 }
 
 impl Orders {
-    /// The orders of `skeleton`: tips have 1, where two of order n meet it is n + 1.
+    /// The orders of `skeleton`: 1 for tips, n + 1 where two of order n meet.
     #[must_use]
     pub fn new(skeleton: &Skeleton) -> Self {
         let nodes = &skeleton.nodes;
-        // Of the children: the highest order, and how many have it.
+        // The highest order of the children, and how many have it.
         let mut highest: Vec<(u32, u32)> = vec![(0, 0); nodes.len()];
         let mut orders = vec![0_u32; nodes.len()];
         for i in (0..nodes.len()).rev() {
@@ -40,7 +40,7 @@ impl Orders {
         for (i, node) in nodes.iter().enumerate() {
             let order = orders[i] as usize - 1;
             let parent = node.parent.map(|p| p as usize);
-            // Roots without limbs are no streams.
+            // A root without children is no stream.
             if parent.is_none_or(|p| orders[p] != orders[i]) && (parent.is_some() || highest[i].0 > 0) {
                 all.streams[order] += 1;
             }
@@ -52,14 +52,14 @@ impl Orders {
         all
     }
 
-    /// The order of the whole.
+    /// The Strahler number: the order of the root.
     #[must_use]
     pub fn highest(&self) -> usize {
         self.streams.len()
     }
 
-    /// The mean ratio of the number of streams of an order to that of the next (geometric); trees have 3 to 5. 0 where
-    /// there is one order only.
+    /// The bifurcation ratio: the number of streams of an order over that of the next, geometric mean. Trees have 3 to 5; 0
+    /// where there is one order only.
     #[must_use]
     pub fn bifurcation(&self) -> f64 {
         match self.streams[..] {

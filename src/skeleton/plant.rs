@@ -1,17 +1,17 @@
-//! Plants: what several steps grew, one from the ends of another, as one forest. Widths that follow whole ways from
-//! the tips to the root, and the form of limbs, are given here.
+//! Plants: the skeletons of several steps, one grown from another, as one forest. Widths that depend on whole paths from tips to
+//! roots are computed here.
 
 use std::collections::HashMap;
 
-use super::{ByLength, Form, Path, Pipe, Skeleton, SkeletonNode, Width};
+use super::{ByLength, Path, Pipe, Skeleton, SkeletonNode, Width};
 use crate::math::{DVec3, power};
 
-/// The unit of widths by length, as a share of the longest way, where none is given.
+/// Default unit of widths by length, as a share of the longest path.
 const UNIT: f64 = 1e-3;
 
 /// What one step contributes to a plant.
 #[derive(Clone, Debug)]
-pub struct Part<'a> {
+pub struct PlantPart<'a> {
     /// What it grew.
     pub skeleton: &'a Skeleton,
     /// Its width.
@@ -24,36 +24,38 @@ pub struct Part<'a> {
 #[derive(Clone, Debug)]
 pub struct Plant {
     pub(super) nodes: Vec<PlantNode>,
-    /// End, z or other number of its width, and the path as its part has it.
+    /// The ends of all paths.
     pub(super) ends: Vec<PlantEnd>,
     pub(super) parts: usize,
 }
 
+/// A node of a plant.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlantNode {
     pub node: SkeletonNode,
     /// The part that it belongs to.
     pub part: u32,
-    /// Length of the longest way from here to a tip.
+    /// Length of the longest path from here to a tip.
     pub reach: f64,
 }
 
+/// The end of a path of a plant.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlantEnd {
     pub part: u32,
+    /// The path, with nodes of the plant.
     pub path: Path,
-    /// The exponent of the ways that start here.
+    /// The exponent of widths traced from here.
     z: f64,
 }
 
 impl Plant {
-    /// Puts the parts together: the trees of a later one grow from where an earlier one has a node.
+    /// Joins the parts: a root of a later part that coincides with a node of an earlier one is that node.
     #[must_use]
-    pub fn new(parts: &[Part<'_>]) -> Self {
+    pub fn new(parts: &[PlantPart<'_>]) -> Self {
         let mut plant = Self { nodes: Vec::new(), ends: Vec::new(), parts: parts.len() };
         let mut known: HashMap<[u64; 3], u32> = HashMap::new();
         for (index, part) in (0..).zip(parts) {
-            // A tree's root that grows from a node is that node.
             let mut renamed: Vec<u32> = Vec::with_capacity(part.skeleton.nodes.len());
             let mut fresh = Vec::new();
             for node in &part.skeleton.nodes {
@@ -91,7 +93,7 @@ impl Plant {
         node.parent.map_or(0.0, |p| (node.position - self.nodes[p as usize].node.position).length())
     }
 
-    /// Gives every node its radius, by the width of the part where the plant starts.
+    /// Sets the radius of every node; `width` is that of the part where the plant starts.
     pub fn thicken(&mut self, width: &Width) {
         let lengths: Vec<f64> = (0..self.nodes.len()).map(|i| self.step(i)).collect();
         match width {
@@ -101,28 +103,29 @@ impl Plant {
         }
     }
 
-    /// For each node the length of the longest way to one of `ends`, if there is one.
-    fn ways(&self, ends: impl Iterator<Item = u32>, lengths: &[f64]) -> Vec<Option<f64>> {
-        let mut ways: Vec<Option<f64>> = vec![None; self.nodes.len()];
-        ends.for_each(|end| ways[end as usize] = Some(0.0));
+    /// The length of the longest path from each node to one of `ends`, if there is one.
+    fn longest_paths(&self, ends: impl Iterator<Item = u32>, lengths: &[f64]) -> Vec<Option<f64>> {
+        let mut longest: Vec<Option<f64>> = vec![None; self.nodes.len()];
+        ends.for_each(|end| longest[end as usize] = Some(0.0));
         for i in (0..self.nodes.len()).rev() {
-            if let (Some(way), Some(parent)) = (ways[i], self.nodes[i].node.parent) {
-                let longer = way + lengths[i];
-                let slot = &mut ways[parent as usize];
+            if let (Some(length), Some(parent)) = (longest[i], self.nodes[i].node.parent) {
+                let longer = length + lengths[i];
+                let slot = &mut longest[parent as usize];
                 *slot = Some(slot.map_or(longer, |old| if longer > old { longer } else { old }));
             }
         }
-        ways
+        longest
     }
 
-    /// `s^z` (Xu and Mould 2012, section 3.2), z by the level where the trace starts, scaled to `root`; the larger stays.
+    /// `s^z` (Xu and Mould 2012, section 3.2), the maximum over all traces, scaled to `root`; z is that of the level where the
+    /// trace starts.
     fn by_length(&mut self, spec: &ByLength, lengths: &[f64]) {
         let root = spec.root.unwrap_or(1.0);
-        let all = self.ways(self.ends.iter().map(|end| end.path.end), lengths);
+        let all = self.longest_paths(self.ends.iter().map(|end| end.path.end), lengths);
         let longest = all.iter().flatten().fold(f64::MIN_POSITIVE, |a, &b| f64::max(a, b));
         let unit = spec.unit.unwrap_or(longest * UNIT);
-        for (node, way) in self.nodes.iter_mut().zip(&all) {
-            node.reach = way.unwrap_or(0.0);
+        for (node, length) in self.nodes.iter_mut().zip(&all) {
+            node.reach = length.unwrap_or(0.0);
             node.node.radius = 0.0;
         }
         // One pass for each exponent.
@@ -131,9 +134,9 @@ impl Plant {
         exponents.dedup();
         for z in exponents {
             let ends = self.ends.iter().filter(|end| end.z == z).map(|end| end.path.end);
-            let ways = self.ways(ends, lengths);
-            for (node, way) in self.nodes.iter_mut().zip(ways) {
-                let Some(s) = way else { continue };
+            let traces = self.longest_paths(ends, lengths);
+            for (node, length) in self.nodes.iter_mut().zip(traces) {
+                let Some(s) = length else { continue };
                 let radius = power(s / unit, z);
                 if radius > node.node.radius {
                     node.node.radius = radius;
@@ -146,8 +149,9 @@ impl Plant {
         }
     }
 
+    /// The pipe model: the cross-section of a limb is the sum of those of its children (Shinozaki et al. 1964), scaled to `root`.
     fn by_pipe(&mut self, spec: &Pipe, lengths: &[f64]) {
-        let all = self.ways(self.ends.iter().map(|end| end.path.end), lengths);
+        let all = self.longest_paths(self.ends.iter().map(|end| end.path.end), lengths);
         let mut area = vec![0.0; self.nodes.len()];
         for i in (0..self.nodes.len()).rev() {
             if area[i] == 0.0 {
@@ -160,13 +164,13 @@ impl Plant {
         let whole = area.iter().copied().fold(1.0, f64::max);
         let tip = spec.tip.unwrap_or(0.0);
         let root = spec.root.unwrap_or(1.0);
-        for ((node, area), way) in self.nodes.iter_mut().zip(area).zip(all) {
-            node.reach = way.unwrap_or(0.0);
+        for ((node, area), length) in self.nodes.iter_mut().zip(area).zip(all) {
+            node.reach = length.unwrap_or(0.0);
             node.node.radius = f64::max(root * power(area / whole, 1.0 / spec.power.unwrap_or(2.0)), tip);
         }
     }
 
-    /// For each node the child that continues its limb: the thickest, then the one that reaches farthest, then the first.
+    /// The child that continues the limb of each node: the thickest, then the one with the longest path to a tip, then the first.
     pub(super) fn main_children(&self) -> Vec<Option<u32>> {
         let mut main: Vec<Option<u32>> = vec![None; self.nodes.len()];
         let key = |i: u32| {
@@ -183,26 +187,26 @@ impl Plant {
         main
     }
 
-    /// Puts parents before children again: limbs stay together, the main child first.
+    /// Restores the order in which parents precede children: depth first, the main child first.
     pub(super) fn reorder(&mut self) {
         let mut children: Vec<Vec<u32>> = vec![Vec::new(); self.nodes.len()];
         let mut order: Vec<u32> = Vec::with_capacity(self.nodes.len());
-        let mut waiting: Vec<u32> = Vec::new();
+        let mut stack: Vec<u32> = Vec::new();
         for (i, node) in (0_u32..).zip(&self.nodes) {
             match node.node.parent {
                 Some(parent) => children[parent as usize].push(i),
-                None => waiting.push(i),
+                None => stack.push(i),
             }
         }
-        waiting.reverse();
-        while let Some(i) = waiting.pop() {
+        stack.reverse();
+        while let Some(i) = stack.pop() {
             order.push(i);
-            waiting.extend(children[i as usize].iter().rev());
+            stack.extend(children[i as usize].iter().rev());
         }
         self.keep(&order);
     }
 
-    /// Keeps the nodes in `order` alone, named by their place in it; parents and ends must be among them.
+    /// Keeps only the nodes in `order`, renumbered by it; parents and ends must be among them.
     pub(super) fn keep(&mut self, order: &[u32]) {
         let mut renamed = vec![u32::MAX; self.nodes.len()];
         order.iter().zip(0..).for_each(|(&old, new)| renamed[old as usize] = new);
@@ -216,12 +220,7 @@ impl Plant {
         }
     }
 
-    /// Gives limbs their form.
-    pub fn shape(&mut self, form: &Form, width: &Width) {
-        form.apply(self, width);
-    }
-
-    /// The parts again. A tree of a later part starts with a node of its own where it leaves an earlier one.
+    /// The inverse of [`Plant::new`]: where a tree of a later part leaves an earlier one, it starts with a copy of that node.
     #[must_use]
     pub fn split(self) -> Vec<Skeleton> {
         let mut skeletons: Vec<Skeleton> = vec![Skeleton::default(); self.parts];
@@ -241,7 +240,7 @@ impl Plant {
                 if other.part == *part {
                     return Some(renamed[p as usize]);
                 }
-                // A limb that starts where it leaves needs no second start.
+                // A side limb that starts at the fork needs no copy of it.
                 (other.node.position != node.position).then(|| copy(&mut skeletons, *part, p, &self.nodes))
             });
             let list = &mut skeletons[*part as usize].nodes;
@@ -250,7 +249,7 @@ impl Plant {
         }
         for PlantEnd { part, path, .. } in &self.ends {
             let is_own = |node: u32| self.nodes[node as usize].part == *part;
-            // A path that has no node of its own ends where it starts.
+            // A path without nodes of its own ends at its root.
             let end = if is_own(path.end) {
                 renamed[path.end as usize]
             } else {
@@ -269,8 +268,8 @@ impl Plant {
     }
 }
 
-/// A direction from `a` to `b`, or zero.
-pub(super) fn way(a: DVec3, b: DVec3) -> DVec3 {
+/// The unit vector from `a` to `b`, or zero.
+pub(super) fn direction(a: DVec3, b: DVec3) -> DVec3 {
     (b - a).normalize_or_zero()
 }
 
@@ -291,15 +290,15 @@ mod tests {
         (trunk, limbs)
     }
 
-    /// Against the paper's own way of tracing back from each endpoint.
+    /// Against a trace back from each endpoint, as in the paper.
     #[test]
     fn widths_follow_every_trace() {
         let (trunk, limbs) = parts();
         let width = |root, z| Width::Length(ByLength { root, tip: None, unit: None, z: PerRound::All(z) });
         let (wide, fine) = (width(Some(0.5), 0.6), width(None, 0.3));
         let given = [
-            Part { skeleton: &trunk, width: &wide, first_level: 0 },
-            Part { skeleton: &limbs, width: &fine, first_level: 1 },
+            PlantPart { skeleton: &trunk, width: &wide, first_level: 0 },
+            PlantPart { skeleton: &limbs, width: &fine, first_level: 1 },
         ];
         let mut plant = Plant::new(&given);
         plant.thicken(&wide);
@@ -334,8 +333,8 @@ mod tests {
         let (trunk, limbs) = parts();
         let width = Width::Pipe(Pipe { root: Some(0.4), tip: None, power: None });
         let given = [
-            Part { skeleton: &trunk, width: &width, first_level: 0 },
-            Part { skeleton: &limbs, width: &width, first_level: 1 },
+            PlantPart { skeleton: &trunk, width: &width, first_level: 0 },
+            PlantPart { skeleton: &limbs, width: &width, first_level: 1 },
         ];
         let mut plant = Plant::new(&given);
         plant.thicken(&width);

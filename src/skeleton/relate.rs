@@ -1,11 +1,12 @@
-//! How skeletons lie to each other and to themselves.
+//! Relations of two skeletons: crossings, distances, shared ends.
 
 use std::collections::{HashMap, HashSet};
 
 use super::Skeleton;
+use crate::geom::segment_parameter;
 use crate::math::DVec3;
 
-/// How many trees of `of` start off `on`: a branch that grows from a step starts at one of its nodes.
+/// The number of roots of `of` that coincide with no node of `on`.
 #[must_use]
 pub fn floating(of: &Skeleton, on: &Skeleton) -> usize {
     let bits = |p: DVec3| p.to_array().map(f64::to_bits);
@@ -13,8 +14,8 @@ pub fn floating(of: &Skeleton, on: &Skeleton) -> usize {
     of.nodes.iter().filter(|n| n.parent.is_none() && !places.contains(&bits(n.position))).count()
 }
 
-/// How often segments of one cross segments of the other, seen along z; where both are one skeleton, how often it
-/// crosses itself, neighbours left out.
+/// The number of crossings of segments of `one` with segments of `other`, projected along z; for one and the same skeleton, of
+/// its self-crossings, adjacent segments excepted.
 #[must_use]
 pub fn crossings(one: &Skeleton, other: &Skeleton) -> usize {
     let is_self = std::ptr::eq(one, other);
@@ -50,7 +51,7 @@ pub fn crossings(one: &Skeleton, other: &Skeleton) -> usize {
     if is_self { count / 2 } else { count }
 }
 
-/// Do the insides of two segments cross, seen along z?
+/// Do the interiors of two segments cross, projected along z?
 fn cross(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> bool {
     let side = |p: DVec3, q: DVec3, r: DVec3| (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
     side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
@@ -72,14 +73,13 @@ pub fn nearest(of: &Skeleton, from: &Skeleton) -> f64 {
 fn distance(p: DVec3, from: &Skeleton) -> f64 {
     from.segments()
         .map(|(a, b)| {
-            let way = b.position - a.position;
-            let along = ((p - a.position).dot(way) / way.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-            (a.position + way * along).distance(p)
+            let t = segment_parameter(p, a.position, b.position);
+            (a.position + (b.position - a.position) * t).distance(p)
         })
         .fold(f64::INFINITY, f64::min)
 }
 
-/// The share of the ends of `of` that are ends of `with` too.
+/// The share of the ends of `of` that coincide with ends of `with`.
 #[must_use]
 pub fn shared_ends(of: &Skeleton, with: &Skeleton) -> f64 {
     let ends = |s: &Skeleton| -> Vec<DVec3> { s.paths.iter().map(|p| s.nodes[p.end as usize].position).collect() };

@@ -1,12 +1,11 @@
-//! Smoothing: the steps of the lattice are averaged away along the limbs.
+//! Smoothing of positions along limbs.
 
 use super::Skeleton;
 
-/// Moves each node towards the mean of its neighbours along its limb, so that positions (and radii at forks' first
-/// nodes) are averaged over about `steps` lattice steps (standard deviation) to either side.
+/// Smooths positions along each limb with a standard deviation of `steps` lattice steps.
 ///
-/// Roots and tips stay where they are. A fork has one position, which all its limbs share: branching points stay
-/// together. The kernel is `[1 2 1] / 4`, whose variance is half a step.
+/// Roots and tips are fixed. A fork has one position, that of its main limb, so branching points stay together. The kernel is
+/// `[1 2 1] / 4`, with a variance of half a step.
 pub fn smooth(skeleton: &mut Skeleton, steps: f64) {
     let passes = libm::round(2.0 * steps * steps) as u32;
     let main = skeleton.main_children();

@@ -3,9 +3,9 @@
 use super::{Skeleton, SkeletonNode};
 use crate::math::DVec3;
 
-/// A limb turns by at most about this much from one segment to the next: cosine of 10 degrees.
+/// Greatest turn from one segment to the next, about: cosine of 10 degrees.
 const BEND_COS: f64 = 0.984_807_753_012_208;
-/// Most pieces that a segment is cut into for its bend.
+/// Most pieces of a segment.
 const MOST_BENDS: u32 = 6;
 
 /// Adds nodes where limbs bend, so that no turn between segments is sharper than about 10 degrees.
@@ -19,9 +19,9 @@ pub fn bend(skeleton: &Skeleton) -> Skeleton {
                 let (a, b) = (a.normalize_or_zero(), b.normalize_or_zero());
                 a.dot(b).clamp(-1.0, 1.0)
             };
-            let way = to.position - from.position;
-            let before = from.parent.map(|p| turn(from.position - skeleton.nodes[p as usize].position, way));
-            let after = main[i].map(|n| turn(way, skeleton.nodes[n as usize].position - to.position));
+            let on = to.position - from.position;
+            let before = from.parent.map(|p| turn(from.position - skeleton.nodes[p as usize].position, on));
+            let after = main[i].map(|n| turn(on, skeleton.nodes[n as usize].position - to.position));
             let sharpest = before.unwrap_or(1.0).min(after.unwrap_or(1.0));
             // The angle in units of ten degrees, by 1 - cos t = t^2 / 2.
             libm::ceil(libm::sqrt((1.0 - sharpest) / (1.0 - BEND_COS))) as u32
@@ -30,8 +30,8 @@ pub fn bend(skeleton: &Skeleton) -> Skeleton {
     )
 }
 
-/// Adds nodes so that neighbours are no further apart than `share` of the smaller radius: a string of spheres that
-/// reads as a limb. At most `most` pieces a segment.
+/// Adds nodes so that neighbours are no further apart than `share` of the smaller radius: spheres that overlap to a limb. A
+/// segment has at most `most` pieces.
 #[must_use]
 pub fn overlap(skeleton: &Skeleton, share: f64, most: u32) -> Skeleton {
     resample(
@@ -45,8 +45,8 @@ pub fn overlap(skeleton: &Skeleton, share: f64, most: u32) -> Skeleton {
     )
 }
 
-/// Cuts the segment to each node into as many pieces as `pieces` says, along a Catmull-Rom spline through the nodes
-/// of its limb; cost and radius change evenly.
+/// Divides the segment to each node into `pieces` pieces, along a Catmull-Rom spline through the nodes of its limb; cost and
+/// radius are interpolated linearly.
 fn resample(skeleton: &Skeleton, pieces: impl Fn(&SkeletonNode, &SkeletonNode, usize) -> u32, most: u32) -> Skeleton {
     let main = skeleton.main_children();
     let mut renamed: Vec<u32> = Vec::with_capacity(skeleton.nodes.len());
@@ -57,17 +57,17 @@ fn resample(skeleton: &Skeleton, pieces: impl Fn(&SkeletonNode, &SkeletonNode, u
             let from = &skeleton.nodes[p as usize];
             let count = pieces(from, node, i).clamp(1, most);
             let (a, b) = (from.position, node.position);
-            // Beyond an end the spline goes straight on.
+            // Beyond an end the limb is extrapolated.
             let before = from.parent.map_or(a + a - b, |g| skeleton.nodes[g as usize].position);
             let after = main[i].map_or(b + b - a, |n| skeleton.nodes[n as usize].position);
             for piece in 1..count {
                 let t = f64::from(piece) / f64::from(count);
-                let mix = |x: f64, y: f64| x * (1.0 - t) + y * t;
+                let lerp = |x: f64, y: f64| x * (1.0 - t) + y * t;
                 nodes.push(SkeletonNode {
                     position: catmull_rom([before, a, b, after], t),
                     parent,
-                    cost: mix(from.cost, node.cost),
-                    radius: mix(from.radius, node.radius),
+                    cost: lerp(from.cost, node.cost),
+                    radius: lerp(from.radius, node.radius),
                     ..*node
                 });
                 parent = Some(nodes.len() as u32 - 1);

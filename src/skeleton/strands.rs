@@ -1,38 +1,38 @@
-//! Strands: every path on its own, as hair and moss are (Xu and Mould 2007, Fig. 15).
+//! Strands: every path as a curve of its own, for hair and moss (Xu and Mould 2007, Fig. 15).
 
 use super::{Path, Skeleton, SkeletonNode};
 
 impl Skeleton {
-    /// Every path as a strand of its own, from where it starts to its end, of so many straight `pieces` (1 or more): evenly
-    /// spaced along the path's nodes, costs with them.
+    /// Every path as a strand of `pieces` (1 or more) straight segments from its root to its end, at equal intervals of its
+    /// nodes; costs are interpolated.
     #[must_use]
     pub fn strands(&self, pieces: u32) -> Self {
         let mut strands = Self { classes: self.classes.clone(), ..Self::default() };
         strands.nodes.reserve(self.paths.len() * (pieces as usize + 1));
         strands.paths.reserve(self.paths.len());
-        let mut way: Vec<&SkeletonNode> = Vec::new();
+        let mut nodes: Vec<&SkeletonNode> = Vec::new();
         for path in &self.paths {
             let parent = |node: &SkeletonNode| node.parent.map(|p| p as usize);
-            way.clear();
-            way.extend(
+            nodes.clear();
+            nodes.extend(
                 std::iter::successors(Some(path.end as usize), |&at| parent(&self.nodes[at])).map(|at| &self.nodes[at]),
             );
-            // One that goes nowhere is not seen.
-            if way.len() < 2 {
+            // A path of one node is invisible.
+            if nodes.len() < 2 {
                 continue;
             }
-            way.reverse();
+            nodes.reverse();
             let root = strands.nodes.len() as u32;
-            let last = way.len() - 1;
+            let last = nodes.len() - 1;
             for i in 0..=pieces {
                 let place = f64::from(i) / f64::from(pieces) * last as f64;
                 let low = (place as usize).min(last - 1);
                 let share = place - low as f64;
-                let (a, b) = (way[low], way[low + 1]);
+                let (a, b) = (nodes[low], nodes[low + 1]);
                 let parent = (i > 0).then(|| strands.nodes.len() as u32 - 1);
                 let cost = a.cost + (b.cost - a.cost) * share;
                 let position = a.position + (b.position - a.position) * share;
-                strands.nodes.push(SkeletonNode { position, parent, cost, age: cost, class: path.class, ..*way[0] });
+                strands.nodes.push(SkeletonNode { position, parent, cost, age: cost, class: path.class, ..*nodes[0] });
             }
             strands.paths.push(Path { end: strands.nodes.len() as u32 - 1, root, ..*path });
         }

@@ -1,4 +1,4 @@
-//! Symmetry: a part that grew once stands around an axis several times, as arms of a snow crystal do.
+//! Rotational symmetry: copies of a grown part about an axis, such as the arms of a snow crystal.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -22,7 +22,7 @@ pub struct SymmetrySpec {
 }
 
 impl SymmetrySpec {
-    /// How many parts there are.
+    /// The number of copies.
     #[must_use]
     pub fn parts(&self) -> u32 {
         self.fold * if self.mirror { 2 } else { 1 }
@@ -30,7 +30,7 @@ impl SymmetrySpec {
 }
 
 impl Skeleton {
-    /// This skeleton with all the parts that `symmetry` makes of it, the own one first.
+    /// The union of all copies by `symmetry`, the original first.
     #[must_use]
     pub fn symmetric(&self, symmetry: &SymmetrySpec) -> Self {
         let about = symmetry.about.map_or(DVec3::ZERO, |p| p.0);
@@ -55,8 +55,8 @@ impl Skeleton {
         whole
     }
 
-    /// How far the skeleton is from looking the same after a turn of a `fold`-th about the upright axis through the middle of
-    /// its nodes: the greatest distance of a turned node from the nearest one.
+    /// The deviation from `fold`-fold symmetry about the upright axis through the mean of the nodes: the greatest distance of a
+    /// rotated node from the nearest node.
     #[must_use]
     pub fn asymmetry(&self, fold: u32) -> f64 {
         let root = self.nodes.iter().map(|n| n.position).sum::<DVec3>() / self.nodes.len().max(1) as f64;

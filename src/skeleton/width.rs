@@ -1,4 +1,4 @@
-//! Width: how thick a limb is along its paths. All thicknesses are radii.
+//! Widths: the radius of limbs along their paths.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -48,18 +48,38 @@ impl PerClass {
     /// The number for each of `classes`.
     ///
     /// # Errors
-    /// A sentence where a class has no number.
-    pub fn resolve(&self, classes: &[String]) -> Result<Vec<f64>, String> {
+    /// [`WidthError`] where a class has no number.
+    pub fn resolve(&self, classes: &[String]) -> Result<Vec<f64>, WidthError> {
         match self {
             Self::All(number) => Ok(vec![*number; classes.len()]),
             Self::Each(numbers) => classes
                 .iter()
                 .map(|class| {
                     let number = numbers.get(class).copied();
-                    number.ok_or_else(|| unknown("number for class", class, numbers.keys()))
+                    let known = || numbers.keys().cloned().collect();
+                    number.ok_or_else(|| WidthError::Class { class: class.clone(), known: known() })
                 })
                 .collect(),
         }
+    }
+}
+
+/// Why a width does not apply to a skeleton.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum WidthError {
+    /// A class of paths has no number.
+    #[error("{}", unknown("number for class", class, known.iter()))]
+    Class {
+        /// The class.
+        class: String,
+        /// The classes that have numbers.
+        known: Vec<String>,
+    },
+}
+
+impl From<WidthError> for String {
+    fn from(error: WidthError) -> Self {
+        error.to_string()
     }
 }
 
@@ -141,7 +161,7 @@ fn even() -> PerClass {
 }
 
 impl Width {
-    /// Is it one that belongs to whole plants ([`crate::skeleton::Plant`])? Whether it starts one then.
+    /// For widths of whole plants ([`crate::skeleton::Plant`]), whether this one starts a plant; `None` for others.
     #[must_use]
     pub fn starts_plant(&self) -> Option<bool> {
         match self {
@@ -150,11 +170,11 @@ impl Width {
         }
     }
 
-    /// Is there a number for each of `classes`?
+    /// Checks that each of `classes` has a number.
     ///
     /// # Errors
-    /// A sentence where one is missing.
-    pub fn check(&self, classes: &[String]) -> Result<(), String> {
+    /// [`WidthError`] where one is missing.
+    pub fn check(&self, classes: &[String]) -> Result<(), WidthError> {
         match self {
             Self::Constant(_) | Self::Length(_) | Self::Pipe(_) => Ok(()),
             Self::Taper(Taper { from, to, beta }) => {
@@ -163,12 +183,12 @@ impl Width {
         }
     }
 
-    /// Gives every node of `skeleton` its radius; where paths share a node the larger stays. Widths of whole plants wait
-    /// until these have grown.
+    /// Sets the radius of every node of `skeleton`, the maximum over the paths through it. Widths of whole plants do nothing
+    /// here ([`crate::skeleton::Plant::thicken`]).
     ///
     /// # Errors
-    /// A sentence where a class of the skeleton has no number.
-    pub fn apply(&self, skeleton: &mut Skeleton) -> Result<(), String> {
+    /// [`WidthError`] where a class of the skeleton has no number.
+    pub fn apply(&self, skeleton: &mut Skeleton) -> Result<(), WidthError> {
         match self {
             Self::Constant(radius) => {
                 skeleton.nodes.par_iter_mut().for_each(|node| node.radius = *radius);
@@ -181,15 +201,15 @@ impl Width {
 }
 
 impl Taper {
-    fn apply(&self, skeleton: &mut Skeleton) -> Result<(), String> {
+    fn apply(&self, skeleton: &mut Skeleton) -> Result<(), WidthError> {
         let classes = &skeleton.classes;
         let from = self.from.resolve(classes)?;
         let to = self.to.resolve(classes)?;
         let beta = self.beta.resolve(classes)?;
         for class in 0..classes.len() as u16 {
             let (from, to, beta) = (from[class as usize], to[class as usize], beta[class as usize]);
-            // Through a node the path with the largest d_max is the thickest there where limbs thin out, and the one
-            // with the smallest where they swell: so one number a node will do for all paths.
+            // At a node the path with the largest d_max is the thickest where limbs taper, the one with the smallest where they
+            // widen: one number a node suffices for all paths.
             let larger = |a: f64, b: f64| if (from >= to) == (a > b) { a } else { b };
             let mut d_max: Vec<Option<f64>> = vec![None; skeleton.nodes.len()];
             let join = |slot: &mut Option<f64>, d: f64| *slot = Some(slot.map_or(d, |old| larger(old, d)));
@@ -203,7 +223,7 @@ impl Taper {
             }
             for (node, d_max) in skeleton.nodes.iter_mut().zip(d_max) {
                 let Some(d_max) = d_max else { continue };
-                // An endpoint on the generator has d_max 0 and is all root.
+                // An endpoint on the generator has d_max 0, and the radius of the root.
                 let share = if d_max > 0.0 { power(node.cost / d_max, beta) } else { 0.0 };
                 let radius = from * (1.0 - share) + to * share;
                 if radius > node.radius {
@@ -237,7 +257,7 @@ mod tests {
         assert!((s.nodes[1].radius - 0.8).abs() < 1e-12, "the larger radius stays");
     }
 
-    /// Against eq. 2 walked path by path, as the paper has it.
+    /// Against eq. 2 evaluated path by path, as in the paper.
     #[test]
     fn shared_nodes_keep_the_larger() {
         for (from, to) in [(1.0, 0.1), (0.1, 1.0)] {

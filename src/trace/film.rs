@@ -1,30 +1,30 @@
-//! What is kept of a picture: colours, and what compositors ask for.
+//! The film: colours, and arbitrary output variables for compositing.
 
 use crate::math::DVec3;
 use crate::raster::{Channel, Layers};
 
-/// Mattes that a pixel holds: the most covering ones (Cryptomatte 1.2).
+/// ID mattes of a pixel: those with the largest coverage (Cryptomatte 1.2).
 pub const RANKS: usize = 6;
 
-/// Ids and their shares of a pixel, the largest first.
+/// IDs and their coverage of a pixel, in descending order; 0 is none.
 pub type Ranks = [(u32, f32); RANKS];
 
-/// What was seen at a pixel, besides its colour: of its nearest sample, but for the mattes.
+/// The output variables of a pixel besides its colour: those of its nearest sample, but for the mattes.
 #[derive(Clone, Copy, Debug)]
 pub struct Data {
-    /// Distance along the view; infinite where there is nothing.
+    /// Distance along the camera's axis, in scene units; infinite for the background.
     pub depth: f32,
-    /// Unit normal in the world; zero where there is nothing.
+    /// Unit normal in world space; zero for the background.
     pub normal: [f32; 3],
-    /// Place in the world.
+    /// Position in world space.
     pub point: [f32; 3],
     /// Path cost.
     pub cost: f32,
-    /// The round of growth that made it.
+    /// The round of growth.
     pub level: f32,
-    /// Objects: their index plus 1; the ground's is one more than the last.
+    /// Objects by index plus 1; the ground follows the last.
     pub objects: Ranks,
-    /// Limbs: their number plus 1 among those of all objects.
+    /// Limbs by number plus 1, counted through all objects.
     pub branches: Ranks,
 }
 
@@ -37,7 +37,7 @@ pub struct Picture {
     pub height: u32,
     /// Red, green, blue times alpha, and alpha, row by row from the top.
     pub pixels: Vec<[f32; 4]>,
-    /// What else was asked for, a value a pixel, or nothing.
+    /// Output variables a pixel; empty if they were not requested.
     pub data: Vec<Data>,
 }
 
@@ -51,13 +51,13 @@ pub(super) struct Sample {
     pub point: DVec3,
     pub cost: f64,
     pub level: u16,
-    /// 0 for nothing.
+    /// Index plus 1; 0 for the background.
     pub object: u32,
-    /// 0 for nothing.
+    /// Number plus 1; 0 for none.
     pub branch: u32,
 }
 
-/// The mean of samples.
+/// The mean colour and alpha of samples (a box filter).
 pub(super) fn mean(samples: &[Sample]) -> [f32; 4] {
     let share = 1.0 / samples.len() as f64;
     let sum = samples
@@ -66,7 +66,7 @@ pub(super) fn mean(samples: &[Sample]) -> [f32; 4] {
     sum.map(|x| (x * share) as f32)
 }
 
-/// What samples tell besides their colour.
+/// The output variables of samples.
 pub(super) fn data(samples: &[Sample]) -> Data {
     let nearest = samples.iter().reduce(|a, b| if b.depth < a.depth { b } else { a });
     let single = |p: DVec3| p.to_array().map(|x| x as f32);
@@ -81,7 +81,7 @@ pub(super) fn data(samples: &[Sample]) -> Data {
     }
 }
 
-/// The shares of ids, the largest first and, where equal, by id; 0 is nothing.
+/// The coverage of IDs in descending order, equal ones by ID; 0 is none.
 fn ranks(ids: impl ExactSizeIterator<Item = u32>) -> Ranks {
     let count = ids.len() as f32;
     let mut ids: Vec<u32> = ids.filter(|&id| id != 0).collect();
@@ -96,7 +96,7 @@ fn ranks(ids: impl ExactSizeIterator<Item = u32>) -> Ranks {
 }
 
 impl Picture {
-    /// A part of it: left, top, width, height, within it.
+    /// The crop `[left, top, width, height]`, which must be within it.
     #[must_use]
     pub(super) fn cut(&self, [left, top, width, height]: [u32; 4]) -> Self {
         fn part<T: Copy>(values: &[T], row: u32, [left, top, width, height]: [u32; 4]) -> Vec<T> {
@@ -110,7 +110,7 @@ impl Picture {
         Self { width, height, pixels: part(&self.pixels, self.width, rect), data: part(&self.data, self.width, rect) }
     }
 
-    /// Its channels as EXR names them: `R G B A`, and where they were asked for `Z`, `N`, `P`, `cost` and `level`.
+    /// Its channels by their EXR names: `R G B A`, and with output variables `Z`, `N`, `P`, `cost` and `level`.
     #[must_use]
     pub fn layers(&self) -> Layers {
         let mut layers = Layers { width: self.width, height: self.height, ..Layers::default() };

@@ -1,8 +1,8 @@
 //! The preview: a ray tracer for models.
 //!
-//! [`World`] puts a [`crate::model::Model`] into trees; [`render`] traces it to a [`Picture`] in linear light, tile by
-//! tile over all threads, the same on any number of them. [`Look::Exact`] computes what POV-Ray computes;
-//! [`Look::Studio`] has light from the whole sky and soft sunlight.
+//! [`World`] is a [`crate::model::Model`] with acceleration structures; [`render`] traces it to a [`Picture`] in linear light,
+//! in tiles over all threads; the result does not depend on their number. [`Look::Exact`] is POV-Ray's shading;
+//! [`Look::Studio`] has light from the whole sky and soft shadows.
 
 mod film;
 mod render;
@@ -12,5 +12,5 @@ mod smooth;
 mod world;
 
 pub use film::{Data, Picture, RANKS, Ranks};
-pub use render::{Look, View, render};
-pub use world::{Surface, World};
+pub use render::{Look, RenderSettings, render};
+pub use world::{SurfaceHit, World};

@@ -6,59 +6,60 @@ use rayon::prelude::*;
 
 use super::film::{Data, Picture, Sample, data, mean};
 use super::sampling::numbers;
-use super::smooth::{Face, MARGIN, smooth};
+use super::smooth::{FaceKey, MARGIN, smooth};
 use super::world::{Within, World};
 use crate::bvh::Ray;
 use crate::math::{Cancelled, Colour, DVec3, Progress};
 use crate::model::{Camera, Projection};
 
-/// Side of a tile, in pixels: small enough to share out evenly, large enough that its rays meet the same things.
+/// Side of a tile, in pixels: small enough to balance the load, large enough for coherent rays.
 const TILE: u32 = 16;
-/// Samples after which a pixel that shows nothing but sky is left.
+/// Samples after which a pixel of background only is finished.
 const FIRST: usize = 4;
 
 /// How a world is lit and sampled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Look {
-    /// What POV-Ray shows: local illumination, and its own samples.
+    /// As POV-Ray: local illumination, and POV-Ray's samples.
     Exact,
-    /// Light from the whole sky, soft sunlight, contact with the ground.
+    /// Light from the whole sky, soft shadows of the sun, ambient occlusion.
     #[default]
     Studio,
 }
 
-/// What is to be rendered.
+/// The parameters of a rendering.
 #[derive(Clone, Copy, Debug)]
-pub struct View {
+pub struct RenderSettings {
     /// Size of the whole picture, in pixels.
     pub size: [u32; 2],
-    /// The part that is rendered: left, top, width, height, in pixels.
+    /// The crop window: left, top, width, height, in pixels.
     pub crop: [u32; 4],
     /// The look.
     pub look: Look,
-    /// Samples a pixel. In the exact look, 1 samples the pixel's middle; more is POV-Ray's `+AM1 +R` of the root:
-    /// a grid and the middle.
+    /// Samples a pixel. In the exact look, 1 is the pixel's centre; n is POV-Ray's `+AM1` with `+R` the square root of n: a grid and
+    /// the centre.
     pub samples: u32,
-    /// Leave out the sky: alpha is what objects and the ground cover.
+    /// Omit the sky: alpha is the coverage by objects and ground.
     pub transparent: bool,
-    /// Keep [`Data`] too.
+    /// Record [`Data`].
     pub data: bool,
 }
 
-impl View {
-    /// All of a picture of this size.
+impl RenderSettings {
+    /// A whole picture of this size.
     #[must_use]
     pub fn new(size: [u32; 2], look: Look, samples: u32) -> Self {
         Self { size, crop: [0, 0, size[0], size[1]], look, samples, transparent: false, data: false }
     }
 }
 
-/// Camera rays.
+/// The generator of camera rays.
 struct Eye {
     camera: Camera,
+    /// Right, up and forwards.
     frame: [DVec3; 3],
     size: [f64; 2],
-    /// Distance of the picture's plane, where it is 1 high; or its width.
+    /// Perspective: distance of the image plane of height 1. Parallel: width of the image plane.
     scale: f64,
     within: Vec<Within>,
 }
@@ -78,7 +79,7 @@ impl Eye {
         Self { camera, frame: camera.frame(), size, scale, within }
     }
 
-    /// The ray through a point of the picture, in pixels (`reference/povray.md`).
+    /// The ray through a point of the picture in pixel coordinates (`reference/povray.md`).
     fn ray(&self, x: f64, y: f64) -> Ray {
         let [right, up, forwards] = self.frame;
         let [width, height] = self.size;
@@ -95,50 +96,54 @@ impl Eye {
     }
 }
 
-/// Renders `view` of `world`.
+/// Renders `world`.
 ///
 /// # Errors
 /// [`Cancelled`] by `progress`.
-pub fn render(world: &World<'_>, view: &View, progress: &Progress) -> Result<Picture, Cancelled> {
+pub fn render(world: &World<'_>, view: &RenderSettings, progress: &Progress) -> Result<Picture, Cancelled> {
     let [left, top, width, height] = view.crop;
     if view.look == Look::Exact {
         return Ok(trace_tiles(world, view, progress)?.0);
     }
-    // A crop shows what the whole would: smoothing needs to know what is around it.
+    // A crop equals that part of the whole picture: smoothing needs a margin.
     let (x, y) = (left.saturating_sub(MARGIN), top.saturating_sub(MARGIN));
     let right = (left + width + MARGIN).min(view.size[0]);
     let bottom = (top + height + MARGIN).min(view.size[1]);
-    let wide = View { crop: [x, y, right - x, bottom - y], ..*view };
+    let wide = RenderSettings { crop: [x, y, right - x, bottom - y], ..*view };
     let (mut picture, faces) = trace_tiles(world, &wide, progress)?;
     picture.pixels = smooth(picture.width, &picture.pixels, &faces);
     Ok(picture.cut([left - x, top - y, width, height]))
 }
 
-/// Traces a view, and tells what each pixel shows where all its samples met one face of even colour.
-fn trace_tiles(world: &World<'_>, view: &View, progress: &Progress) -> Result<(Picture, Vec<Option<Face>>), Cancelled> {
+/// Traces all tiles; a pixel has a face where all its samples hit one face of uniform colour.
+fn trace_tiles(
+    world: &World<'_>,
+    view: &RenderSettings,
+    progress: &Progress,
+) -> Result<(Picture, Vec<Option<FaceKey>>), Cancelled> {
     let eye = Eye::new(world, view.size);
     let [left, top, width, height] = view.crop;
     let mut tiles: Vec<(u32, u32)> =
         (0..height.div_ceil(TILE)).flat_map(|y| (0..width.div_ceil(TILE)).map(move |x| (x, y))).collect();
     tiles.sort_by_key(|&(x, y)| morton(x) | morton(y) << 1);
-    // By the object of a sample: nothing, the objects, the ground.
+    // Has it a uniform colour? By [`Sample::object`]: background, objects, ground.
     let is_even: Vec<bool> = std::iter::once(false)
         .chain(world.model.objects.iter().map(|o| world.model.materials[o.material].1.pattern.is_none()))
         .chain(std::iter::once(true))
         .collect();
-    let face = |s: &Sample| Face::new(s.object, s.normal);
+    let face = |s: &Sample| FaceKey::new(s.object, s.normal);
     let done = AtomicUsize::new(0);
-    let traced: Vec<Tile> = tiles
+    let traced: Vec<TracedTile> = tiles
         .par_iter()
         .map(|&(tile_x, tile_y)| {
             progress.check()?;
-            let mut tile = Tile::default();
+            let mut tile = TracedTile::default();
             let mut samples = Vec::new();
             for (x, y) in places(tile_x, tile_y, width, height) {
                 samples.clear();
                 sample(world, view, &eye, left + x, top + y, &mut samples);
                 tile.pixels.push(mean(&samples));
-                let one = Face::of_all(samples.iter().map(face));
+                let one = FaceKey::of_all(samples.iter().map(face));
                 tile.faces.push(one.filter(|_| is_even[samples[0].object as usize]));
                 if view.data {
                     tile.data.push(data(&samples));
@@ -168,9 +173,9 @@ fn trace_tiles(world: &World<'_>, view: &View, progress: &Progress) -> Result<(P
 
 /// A finished tile, pixel by pixel.
 #[derive(Default)]
-struct Tile {
+struct TracedTile {
     pixels: Vec<[f32; 4]>,
-    faces: Vec<Option<Face>>,
+    faces: Vec<Option<FaceKey>>,
     data: Vec<Data>,
 }
 
@@ -180,13 +185,13 @@ fn places(tile_x: u32, tile_y: u32, width: u32, height: u32) -> impl Iterator<It
     rows.flat_map(move |y| (tile_x * TILE..((tile_x + 1) * TILE).min(width)).map(move |x| (x, y)))
 }
 
-/// The bits of `x` with a gap after each.
+/// The bits of `x` interleaved with zeros, half of a Morton code.
 fn morton(x: u32) -> u64 {
     (0..32).fold(0, |spread, bit| spread | (u64::from(x) >> bit & 1) << (2 * bit))
 }
 
-/// Takes the samples of a pixel.
-fn sample(world: &World<'_>, view: &View, eye: &Eye, x: u32, y: u32, samples: &mut Vec<Sample>) {
+/// Adds the samples of a pixel.
+fn sample(world: &World<'_>, view: &RenderSettings, eye: &Eye, x: u32, y: u32, samples: &mut Vec<Sample>) {
     let (px, py) = (f64::from(x), f64::from(y));
     let take = |dx: f64, dy: f64, u: &[f64; 6]| trace(world, view, eye, &eye.ray(px + dx, py + dy), u);
     match view.look {
@@ -213,7 +218,8 @@ fn sample(world: &World<'_>, view: &View, eye: &Eye, x: u32, y: u32, samples: &m
     }
 }
 
-fn trace(world: &World<'_>, view: &View, eye: &Eye, ray: &Ray, u: &[f64; 6]) -> Sample {
+/// The sample along a camera ray; `u` are its random numbers.
+fn trace(world: &World<'_>, view: &RenderSettings, eye: &Eye, ray: &Ray, u: &[f64; 6]) -> Sample {
     let Some(surface) = world.closest(ray, &eye.within) else {
         let Colour(sky) = if view.transparent { Colour([0.0; 3]) } else { world.model.sky.colour(ray.direction) };
         return Sample {

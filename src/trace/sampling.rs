@@ -1,26 +1,25 @@
-//! Where samples go: numbers that are even over a pixel's samples, over neighbouring pixels, and always the same.
+//! Low-discrepancy sampling: a deterministic sequence that is well distributed over a pixel and over neighbouring pixels.
 
 use crate::math::{DVec3, mix};
 
-/// Numbers to a sample: two in the pixel, two for the sky, two for the sun.
+/// Dimensions of a sample: two for the pixel, two for the sky, two for the sun.
 pub(super) const DIMENSIONS: usize = 6;
 
-/// Pixels along a side of the squares that one curve fills.
+/// Side of the square that one Hilbert curve fills, in pixels.
 const SQUARE: u32 = 256;
 
-/// Steps of the additive recurrence for six dimensions (Roberts 2018): powers of the inverse of the root of
-/// x^7 = x + 1, times 2^32.
+/// Increments of the additive recurrence R6 (Roberts 2018), times 2^32: powers of 1 / phi_6, the root of x^7 = x + 1.
 const STEPS: [u32; DIMENSIONS] =
     [3_859_688_306, 3_468_523_226, 3_117_001_274, 2_801_104_767, 2_517_223_199, 2_262_111_973];
 
-/// The numbers of each of `count` samples of a pixel, from 0 to 1: an additive recurrence along a Hilbert curve.
+/// The coordinates, 0 to 1, of `count` samples of a pixel: an additive recurrence along a Hilbert curve.
 pub(super) fn numbers(x: u32, y: u32, count: u32) -> impl Iterator<Item = [f64; DIMENSIONS]> {
     let square = mix(u64::from(x / SQUARE) << 32 | u64::from(y / SQUARE)) as u32;
     let first = hilbert(x % SQUARE, y % SQUARE).wrapping_mul(count).wrapping_add(square);
     (0..count).map(move |n| STEPS.map(|step| f64::from(first.wrapping_add(n).wrapping_mul(step)) / 4_294_967_296.0))
 }
 
-/// The place of a pixel along the Hilbert curve through its square.
+/// The index of a pixel on the Hilbert curve through its square.
 fn hilbert(mut x: u32, mut y: u32) -> u32 {
     let mut index = 0;
     let mut side = SQUARE / 2;
@@ -38,34 +37,34 @@ fn hilbert(mut x: u32, mut y: u32) -> u32 {
     index
 }
 
-/// Two unit vectors at right angles to `n` and to each other (Duff et al. 2017).
-fn beside(n: DVec3) -> [DVec3; 2] {
+/// Two unit vectors orthogonal to the unit vector `n` and to each other (Duff et al. 2017).
+fn orthonormal_pair(n: DVec3) -> [DVec3; 2] {
     let sign = 1.0_f64.copysign(n.z);
     let a = -1.0 / (sign + n.z);
     let b = n.x * n.y * a;
     [DVec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), DVec3::new(b, sign + n.y * n.y * a, -n.y)]
 }
 
-/// A point of the unit disc, even in area.
+/// A uniformly distributed point of the unit disc from two uniform numbers.
 fn disc(u: f64, v: f64) -> (f64, f64) {
     let (r, turn) = (libm::sqrt(u), v * std::f64::consts::TAU);
     (r * libm::cos(turn), r * libm::sin(turn))
 }
 
-/// A direction about `normal`, as likely as its cosine.
-pub(super) fn above(normal: DVec3, u: f64, v: f64) -> DVec3 {
-    let [right, up] = beside(normal);
+/// A cosine-weighted direction of the hemisphere about `normal` (Malley's method).
+pub(super) fn cosine_hemisphere(normal: DVec3, u: f64, v: f64) -> DVec3 {
+    let [right, up] = orthonormal_pair(normal);
     let (x, y) = disc(u, v);
     let z = libm::sqrt((1.0 - x * x - y * y).max(0.0));
     (right * x + up * y + normal * z).normalize()
 }
 
-/// A direction within `half` (radians) of `towards`.
-pub(super) fn around(towards: DVec3, half: f64, u: f64, v: f64) -> DVec3 {
-    let [right, up] = beside(towards);
+/// A direction of the cone with the half-angle `half` (radians) about `axis`, uniform on its cross-section.
+pub(super) fn cone(axis: DVec3, half: f64, u: f64, v: f64) -> DVec3 {
+    let [right, up] = orthonormal_pair(axis);
     let (x, y) = disc(u, v);
-    let wide = libm::tan(half);
-    (towards + (right * x + up * y) * wide).normalize()
+    let radius = libm::tan(half);
+    (axis + (right * x + up * y) * radius).normalize()
 }
 
 #[cfg(test)]
@@ -103,7 +102,7 @@ mod tests {
     fn directions_are_even() {
         let n = 4096;
         let normal = DVec3::new(0.6, 0.0, 0.8);
-        let mean = numbers(3, 5, n).map(|u| above(normal, u[2], u[3]).dot(normal)).sum::<f64>();
+        let mean = numbers(3, 5, n).map(|u| cosine_hemisphere(normal, u[2], u[3]).dot(normal)).sum::<f64>();
         // The mean cosine of a cosine-weighted hemisphere.
         assert!((mean / f64::from(n) - 2.0 / 3.0).abs() < 1e-2);
     }

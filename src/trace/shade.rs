@@ -1,18 +1,18 @@
-//! The light that a surface sends back: POV-Ray's local illumination, and the studio's.
+//! Shading: POV-Ray's local illumination, and the studio look.
 
-use super::sampling::{DIMENSIONS, above, around};
-use super::world::{Surface, World};
+use super::sampling::{DIMENSIONS, cone, cosine_hemisphere};
+use super::world::{SurfaceHit, World};
 use crate::bvh::Ray;
 use crate::math::{Colour, DVec3, power};
 use crate::model::{Light, Material};
 
-/// POV-Ray lets nothing nearer than this cast a shadow (`reference/povray.md`; its own unit is ours).
+/// POV-Ray's shadow tolerance: nothing nearer casts a shadow (`reference/povray.md`), in scene units.
 const SHADOW: f64 = 1e-3;
 
 impl World<'_> {
-    /// The light along `ray` from `surface`, as POV-Ray computes it (`reference/povray.md`): no more than one light's
-    /// shadow ray each.
-    pub(super) fn exact(&self, ray: &Ray, surface: &Surface) -> [f64; 3] {
+    /// The radiance of `surface` towards the origin of `ray` by POV-Ray's local illumination (`reference/povray.md`): one shadow ray
+    /// for each light.
+    pub(super) fn exact(&self, ray: &Ray, surface: &SurfaceHit) -> [f64; 3] {
         let (material, pigment) = self.material(surface);
         let own = material.ambient + material.emission;
         let mut colour = pigment.map(|c| c * own);
@@ -32,14 +32,14 @@ impl World<'_> {
         colour
     }
 
-    /// The light along `ray` from `surface` in the studio look: the sky from all around instead of constant ambient
-    /// light, and suns that have a size. `u` picks one direction each.
-    pub(super) fn studio(&self, ray: &Ray, surface: &Surface, u: &[f64; DIMENSIONS]) -> [f64; 3] {
+    /// The radiance of `surface` towards the origin of `ray` in the studio look: the sky instead of constant ambient light, and suns
+    /// of finite size. `u` selects one direction to the sky and one to each sun.
+    pub(super) fn studio(&self, ray: &Ray, surface: &SurfaceHit, u: &[f64; DIMENSIONS]) -> [f64; 3] {
         let (material, pigment) = self.material(surface);
         let mut colour = pigment.map(|c| c * material.emission);
         let origin = surface.point + surface.normal * self.off;
         if material.diffuse > 0.0 && !surface.is_inside {
-            let direction = above(surface.normal, u[2], u[3]);
+            let direction = cosine_hemisphere(surface.normal, u[2], u[3]);
             if !self.is_blocked(&Ray::new(origin, direction)) {
                 let Colour(light) = self.dome.light(direction);
                 add(&mut colour, &pigment.map(|c| c * material.diffuse), &light);
@@ -54,7 +54,7 @@ impl World<'_> {
             if let Light::Sun { size, .. } = light
                 && *size > 0.0
             {
-                towards = around(towards, size * 0.5, u[4], u[5]);
+                towards = cone(towards, size * 0.5, u[4], u[5]);
             }
             if towards.dot(surface.normal) <= 0.0 || surface.is_inside {
                 continue;
@@ -67,8 +67,8 @@ impl World<'_> {
         colour
     }
 
-    /// What a surface is made of, and its colour there.
-    fn material(&self, surface: &Surface) -> (&Material, [f64; 3]) {
+    /// The material of a surface, and its colour there.
+    fn material(&self, surface: &SurfaceHit) -> (&Material, [f64; 3]) {
         let material = match (surface.object, &self.model.ground) {
             (Some(object), _) => &self.model.materials[self.model.objects[object as usize].material].1,
             (None, Some(ground)) => &ground.material,
@@ -83,21 +83,22 @@ fn towards(light: &Light, point: DVec3) -> (DVec3, f64, bool) {
     match *light {
         Light::Sun { towards, shadow, .. } => (towards, f64::INFINITY, shadow),
         Light::Point { at, shadow, .. } => {
-            let way = at - point;
-            let distance = way.length();
-            (way / distance.max(f64::MIN_POSITIVE), distance, shadow)
+            let to_light = at - point;
+            let distance = to_light.length();
+            (to_light / distance.max(f64::MIN_POSITIVE), distance, shadow)
         }
     }
 }
 
+/// Adds `share * light`, channel by channel.
 fn add(sum: &mut [f64; 3], share: &[f64; 3], light: &[f64; 3]) {
     for i in 0..3 {
         sum[i] += share[i] * light[i];
     }
 }
 
-/// The share of a light that comes back: diffuse, and highlights after Blinn (`specular`) and Phong, where `ray` asks
-/// for them: lights without shadow make none.
+/// The reflected share of a light: Lambertian diffuse, and with `ray` the highlights of Blinn (`specular`) and Phong. Shadowless
+/// lights have no highlights.
 fn lit(material: &Material, pigment: [f64; 3], ray: Option<&Ray>, normal: DVec3, towards: DVec3) -> [f64; 3] {
     let diffuse = material.diffuse * normal.dot(towards);
     let Some(ray) = ray else { return pigment.map(|c| c * diffuse) };

@@ -1,29 +1,29 @@
-//! Less grain where colours are even, so that what varies from pixel to pixel is chance or shadow.
+//! Denoising where the colour is uniform, so that variation is noise or shadow.
 
 use rayon::prelude::*;
 
 use crate::math::DVec3;
 
-/// Pixels on each side that a smoothed pixel may take from.
+/// Radius of the filter, in pixels.
 const REACH: i64 = 3;
-/// Pixels on each side that must be known, to smooth a pixel.
+/// Margin that the filter and its guide need, in pixels.
 pub(super) const MARGIN: u32 = REACH as u32 + 1;
-/// Differences of light, after a first mean over neighbours, that count as chance; shadows' edges are stronger.
-const CHANCE: f32 = 0.025;
+/// Scale of the range kernel: differences of 3 x 3 means of luminance below it count as noise.
+const NOISE: f32 = 0.025;
 
-/// A part of a normal as a whole number: a normal in three bytes, for pictures of many pixels.
+/// Quantisation of a normal's components, to one byte each.
 const UNIT: f64 = 127.0;
-/// Faces whose normals have a cosine of at least 0.98 are one.
+/// Least scalar product of quantised normals of one face: a cosine of 0.98.
 const ALIKE: i32 = 15_807;
 
-/// All that a pixel shows, where it shows one thing of one colour.
+/// The object and the normal that a pixel shows, if there is only one of each.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Face {
+pub(super) struct FaceKey {
     object: u32,
     normal: [i8; 3],
 }
 
-impl Face {
+impl FaceKey {
     pub fn new(object: u32, normal: DVec3) -> Self {
         Self { object, normal: (normal * UNIT).to_array().map(|c| libm::round(c) as i8) }
     }
@@ -33,18 +33,18 @@ impl Face {
         self.object == other.object && cosine >= ALIKE
     }
 
-    /// The one face that all of these show, if they do; without a normal it is none.
+    /// The face that all of these have in common, if there is one; the background, without a normal, is none.
     pub fn of_all(mut faces: impl Iterator<Item = Self> + Clone) -> Option<Self> {
         let first = faces.clone().next()?;
         faces.all(|face| face.is_like(&first)).then_some(first)
     }
 }
 
-/// Smooths the pixels that show one face, over pixels of such faces alone (a bilateral filter, Tomasi and Manduchi
-/// 1998, told apart by means of three by three so that grain does not keep itself).
-pub(super) fn smooth(width: u32, pixels: &[[f32; 4]], faces: &[Option<Face>]) -> Vec<[f32; 4]> {
+/// Filters the pixels that show one face over pixels of the same face: a bilateral filter (Tomasi and Manduchi 1998) guided by
+/// 3 x 3 means, so that noise does not preserve itself.
+pub(super) fn smooth(width: u32, pixels: &[[f32; 4]], faces: &[Option<FaceKey>]) -> Vec<[f32; 4]> {
     let (w, h) = (i64::from(width), pixels.len() as i64 / i64::from(width));
-    let around = |i: usize, own: Face, reach: i64| {
+    let around = |i: usize, own: FaceKey, reach: i64| {
         let (x, y) = (i as i64 % w, i as i64 / w);
         let rows = (y - reach).max(0)..=(y + reach).min(h - 1);
         rows.flat_map(move |v| ((x - reach).max(0)..=(x + reach).min(w - 1)).map(move |u| (u, v)))
@@ -65,7 +65,7 @@ pub(super) fn smooth(width: u32, pixels: &[[f32; 4]], faces: &[Option<Face>]) ->
         let mut sum = [0.0; 4];
         let mut total = 0.0;
         for (j, distance2) in around(i, own, REACH) {
-            let difference = (means[j] - means[i]) / CHANCE;
+            let difference = (means[j] - means[i]) / NOISE;
             let alike = 1.0 / (1.0 + difference * difference);
             let weight = alike * alike / (1.0 + distance2 * 0.15);
             (0..4).for_each(|c| sum[c] += pixels[j][c] * weight);
@@ -85,12 +85,12 @@ mod tests {
         for i in 0..1000_u64 {
             let c = [0, 1, 2].map(|k| (crate::math::mix(3 * i + k) % 2001) as f64 / 1000.0 - 1.0);
             let normal = DVec3::from_array(c).normalize_or(DVec3::Z);
-            let face = Face::new(1, normal);
-            assert_eq!(Face::of_all([face; 3].into_iter()), Some(face));
+            let face = FaceKey::new(1, normal);
+            assert_eq!(FaceKey::of_all([face; 3].into_iter()), Some(face));
             let turned = normal.any_orthonormal_vector() * 0.35 + normal;
-            assert!(!face.is_like(&Face::new(1, turned.normalize())), "{normal}");
+            assert!(!face.is_like(&FaceKey::new(1, turned.normalize())), "{normal}");
         }
-        assert_eq!(Face::of_all([Face::new(1, DVec3::ZERO)].into_iter()), None);
+        assert_eq!(FaceKey::of_all([FaceKey::new(1, DVec3::ZERO)].into_iter()), None);
     }
 
     #[test]
@@ -100,12 +100,12 @@ mod tests {
         let pixels: Vec<[f32; 4]> = (0..width * height)
             .map(|i| [if i % width < 16 { 0.2 } else { 0.6 } + noise(i) * 0.04, 0.4, 0.4, 1.0])
             .collect();
-        let ground = Face::new(1, DVec3::Z);
+        let ground = FaceKey::new(1, DVec3::Z);
         let mut faces = vec![Some(ground); pixels.len()];
         faces[5] = None;
-        // Others take nothing from the ground, nor give it anything.
-        faces[40] = Some(Face::new(2, DVec3::Z));
-        faces[42] = Some(Face::new(1, DVec3::X));
+        // Other faces are separate from the ground.
+        faces[40] = Some(FaceKey::new(2, DVec3::Z));
+        faces[42] = Some(FaceKey::new(1, DVec3::X));
         let smoothed = smooth(width, &pixels, &faces);
         assert!([5, 40, 42].iter().all(|&i| smoothed[i] == pixels[i]));
         let spread = |p: &[[f32; 4]]| {

@@ -107,7 +107,7 @@ impl Place {
 
 /// What a ray met.
 #[derive(Clone, Copy, Debug)]
-pub struct Surface {
+pub struct SurfaceHit {
     /// Distance along the ray.
     pub t: f64,
     /// Where it is.
@@ -254,7 +254,7 @@ impl<'a> World<'a> {
         Self { model, dome: Dome::new(model), shapes, boxes: Boxes::new(&boxes), instances, branches, off: reach * OFF }
     }
 
-    /// The name of each branch as [`Surface::branch`] counts them: `object.limb`.
+    /// The name of each branch as [`SurfaceHit::branch`] counts them: `object.limb`.
     #[must_use]
     pub fn branch_names(&self) -> Vec<String> {
         let mut names = Vec::new();
@@ -279,7 +279,7 @@ impl<'a> World<'a> {
     }
 
     /// The nearest thing on the ray, `within` being the solids that hold its origin.
-    pub(super) fn closest(&self, ray: &Ray, within: &[Within]) -> Option<Surface> {
+    pub(super) fn closest(&self, ray: &Ray, within: &[Within]) -> Option<SurfaceHit> {
         let mut ray = *ray;
         let ground = self.ground(&ray);
         if let Some(surface) = &ground {
@@ -304,14 +304,14 @@ impl<'a> World<'a> {
                 && surface.is_none_or(|s| entry.t * scale < s.t)
             {
                 let inner = self.on_cone(&ray, w.instance, entry.t * scale, Some(entry), shape, (&cone, balls));
-                surface = Some(Surface { is_inside: true, ..inner });
+                surface = Some(SurfaceHit { is_inside: true, ..inner });
             }
         }
         surface
     }
 
     /// The surface of a hit.
-    fn surface(&self, ray: &Ray, instance: u32, t: f64, id: u32) -> Surface {
+    fn surface(&self, ray: &Ray, instance: u32, t: f64, id: u32) -> SurfaceHit {
         let (object, place) = &self.instances[instance as usize];
         match &self.shapes[*object as usize] {
             Shape::Mesh(mesh, _) => self.on_mesh(ray, instance, t, id, mesh),
@@ -347,14 +347,14 @@ impl<'a> World<'a> {
         }
     }
 
-    fn ground(&self, ray: &Ray) -> Option<Surface> {
+    fn ground(&self, ray: &Ray) -> Option<SurfaceHit> {
         let ground = self.model.ground.as_ref()?;
         let t = (ground.height - ray.origin.z) / ray.direction.z;
         let point = ray.at(t);
         let is_met = t > ray.near && t < ray.far;
         let is_on = ground.radius.is_none_or(|r| point.x * point.x + point.y * point.y <= r * r);
         let normal = if ray.direction.z < 0.0 { DVec3::Z } else { DVec3::NEG_Z };
-        (is_met && is_on).then_some(Surface {
+        (is_met && is_on).then_some(SurfaceHit {
             t,
             point,
             normal,
@@ -375,7 +375,7 @@ impl<'a> World<'a> {
         entry: Option<Entry>,
         shape: &LimbShape<'_>,
         (cone, balls): (&RoundCone, [u32; 2]),
-    ) -> Surface {
+    ) -> SurfaceHit {
         let (index, place) = &self.instances[instance as usize];
         let (own, scale) = place.ray(ray);
         // In double precision, unless the two disagree whether it is met at all.
@@ -387,7 +387,7 @@ impl<'a> World<'a> {
         let at = if share > 0.0 { 1 } else { 0 };
         let pattern = shape.share(balls[at], own.at(t / scale));
         let normal = place.normal(normal);
-        Surface {
+        SurfaceHit {
             t,
             point: ray.at(t),
             normal: if normal.dot(ray.direction) > 0.0 { -normal } else { normal },
@@ -400,7 +400,7 @@ impl<'a> World<'a> {
         }
     }
 
-    fn on_mesh(&self, ray: &Ray, instance: u32, t: f64, id: u32, mesh: &Mesh) -> Surface {
+    fn on_mesh(&self, ray: &Ray, instance: u32, t: f64, id: u32, mesh: &Mesh) -> SurfaceHit {
         let (index, place) = &self.instances[instance as usize];
         let object = &self.model.objects[*index as usize];
         let triangle = triangle(mesh, id as usize);
@@ -419,7 +419,7 @@ impl<'a> World<'a> {
             None => flat,
         };
         let normal = place.normal(normal);
-        Surface {
+        SurfaceHit {
             t,
             point: ray.at(t),
             normal: if normal.dot(ray.direction) > 0.0 { -normal } else { normal },

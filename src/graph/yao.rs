@@ -1,49 +1,49 @@
-//! Which scattered nodes are joined: the Yao graph (Yao 1977; the orthant neighbourhood graph of Germer and Strothotte
+//! Neighbour search for scattered nodes: the Yao graph (Yao 1977; the orthant neighbourhood graph of Germer and Strothotte
 //! 2007), or all within a radius.
 
 use rayon::prelude::*;
 
 use super::Sectors;
+use crate::geom::Bounds;
 use crate::math::DVec3;
 
-/// Cells for each node at most: nodes may lie far apart.
+/// Most cells for each node: nodes may be far apart.
 const MOST_CELLS: f64 = 8.0;
-/// Cells around a node that are searched one by one; what lies farther is found through the pyramid.
+/// Rings of cells around a node that are searched exhaustively; beyond them the pyramid is descended.
 const RINGS: i32 = 2;
-/// Nodes that a thread takes at a time.
+/// Nodes in a thread's unit of work.
 const CHUNK: usize = 1024;
 
-/// Nodes in cells, with a pyramid of boxes over them.
-pub(super) struct Neighbourhood<'a> {
+/// A uniform grid of nodes, with a pyramid of bounding boxes over its cells.
+pub(super) struct NodeGrid<'a> {
     nodes: &'a [DVec3],
     /// Which edges are allowed.
     owners: Option<&'a [u8]>,
     origin: DVec3,
     side: f64,
     size: [i32; 3],
-    /// Where each cell's nodes start in `members`.
+    /// The index in `members` of each cell's first node.
     starts: Vec<u32>,
     members: Vec<u32>,
-    /// From the cells up to one box: size, and the boxes of what is in each.
+    /// From the cells up to a single box.
     levels: Vec<Level>,
 }
 
+/// A level of the pyramid.
 struct Level {
     size: [i32; 3],
-    boxes: Vec<[DVec3; 2]>,
+    /// The bounding box of the nodes in each cell.
+    boxes: Vec<Bounds>,
 }
 
-const EMPTY: [DVec3; 2] = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-
-/// The nearest in each sector: distance squared, number.
+/// The nearest node in each sector: distance squared, number.
 type Best = [(f64, u32); Sectors::MOST];
 
-impl<'a> Neighbourhood<'a> {
-    /// `nodes`, in cells with this side or more. Nodes of two different owners other than 0 are never joined.
+impl<'a> NodeGrid<'a> {
+    /// `nodes` in cells of at least this side. Nodes of two different owners other than 0 are never joined.
     pub fn new(nodes: &'a [DVec3], owners: Option<&'a [u8]>, side: f64) -> Self {
-        let low = nodes.iter().fold(DVec3::INFINITY, |a, &b| a.min(b));
-        let high = nodes.iter().fold(DVec3::NEG_INFINITY, |a, &b| a.max(b));
-        let size = |side: f64| ((high - low) / side).to_array().map(|c| libm::floor(c) + 1.0);
+        let bounds = Bounds::of_points(nodes.iter().copied());
+        let size = |side: f64| (bounds.size() / side).to_array().map(|c| libm::floor(c) + 1.0);
         let mut side = side;
         while size(side).iter().product::<f64>() > MOST_CELLS * nodes.len() as f64 + 64.0 {
             side *= 1.25;
@@ -52,7 +52,7 @@ impl<'a> Neighbourhood<'a> {
         let mut own = Self {
             nodes,
             owners,
-            origin: low,
+            origin: bounds.min,
             side,
             size,
             starts: Vec::new(),
@@ -61,7 +61,7 @@ impl<'a> Neighbourhood<'a> {
         };
         let count = size.iter().map(|&s| s as usize).product::<usize>();
         let cells: Vec<u32> = nodes.iter().map(|&p| own.index(own.cell(p)) as u32).collect();
-        // A counting sort keeps the order of nodes within a cell.
+        // A counting sort is stable: it keeps the order of nodes within a cell.
         own.starts = vec![0; count + 1];
         for &cell in &cells {
             own.starts[cell as usize + 1] += 1;
@@ -76,7 +76,7 @@ impl<'a> Neighbourhood<'a> {
             own.members[*place as usize] = i;
             *place += 1;
         }
-        // Small graphs are searched whole.
+        // Small graphs are searched exhaustively.
         if size.iter().any(|&s| s > 2 * RINGS + 1) {
             own.levels = own.pyramid();
         }
@@ -95,7 +95,7 @@ impl<'a> Neighbourhood<'a> {
     fn pyramid(&self) -> Vec<Level> {
         let cells = self.starts.windows(2).map(|w| {
             let members = &self.members[w[0] as usize..w[1] as usize];
-            members.iter().map(|&i| self.nodes[i as usize]).fold(EMPTY, |[a, b], p| [a.min(p), b.max(p)])
+            Bounds::of_points(members.iter().map(|&i| self.nodes[i as usize]))
         });
         let mut levels = vec![Level { size: self.size, boxes: cells.collect() }];
         while let Some(level) = levels.last().filter(|level| level.boxes.len() > 1) {
@@ -105,7 +105,7 @@ impl<'a> Neighbourhood<'a> {
                 for y in 0..size[1] {
                     for x in 0..size[0] {
                         let within = children(level.size, [x, y, z]).map(|i| level.boxes[i]);
-                        boxes.push(within.fold(EMPTY, |[a, b], [c, d]| [a.min(c), b.max(d)]));
+                        boxes.push(within.fold(Bounds::EMPTY, Bounds::union));
                     }
                 }
             }
@@ -136,7 +136,7 @@ impl<'a> Neighbourhood<'a> {
         }
     }
 
-    /// The nearest node in each sector around node `i`; of several the first.
+    /// The nearest node in each sector around node `i`; of equally near ones the first.
     fn nearest(&self, i: u32, sectors: &Sectors) -> Best {
         let p = self.nodes[i as usize];
         let at = self.cell(p);
@@ -153,7 +153,7 @@ impl<'a> Neighbourhood<'a> {
         if self.levels.is_empty() {
             return best;
         }
-        // What lies outside the cells searched is at least this far.
+        // Nodes outside the searched cells are at least this far.
         let low = self.origin + DVec3::from_array(at.map(|c| f64::from(c - RINGS))) * self.side;
         let high = self.origin + DVec3::from_array(at.map(|c| f64::from(c + RINGS + 1))) * self.side;
         let flat = |axis: &usize| self.size[*axis] > 1;
@@ -167,14 +167,14 @@ impl<'a> Neighbourhood<'a> {
         best
     }
 
-    /// Searches the whole pyramid for a nearer node in `sector`.
+    /// Searches the pyramid for a nearer node in `sector`: depth first, nearest box first.
     fn descend(&self, i: u32, sectors: &Sectors, sector: usize, best: &mut (f64, u32)) {
         let p = self.nodes[i as usize];
-        let mut waiting = vec![(self.levels.len() - 1, [0_i32; 3], 0_usize)];
-        while let Some((rank, at, index)) = waiting.pop() {
-            let [low, high] = self.levels[rank].boxes[index];
-            let off = (low - p).max(p - high).max(DVec3::ZERO).length_squared();
-            if low.x > high.x || off > best.0 || !sectors.may_hold(sector, low - p, high - p) {
+        let mut stack = vec![(self.levels.len() - 1, [0_i32; 3], 0_usize)];
+        while let Some((rank, at, index)) = stack.pop() {
+            let own = self.levels[rank].boxes[index];
+            let is_far = own.distance_squared(p) > best.0;
+            if own.min.x > own.max.x || is_far || !sectors.may_hold(sector, own.min - p, own.max - p) {
                 continue;
             }
             if rank == 0 {
@@ -188,21 +188,20 @@ impl<'a> Neighbourhood<'a> {
                 continue;
             }
             let below = &self.levels[rank - 1];
-            // The nearest last, so that it is looked at first.
+            // The nearest is pushed last, and so popped first.
             let mut next: Vec<(f64, [i32; 3], usize)> = children(below.size, at)
                 .map(|index| {
-                    let [low, high] = below.boxes[index];
                     let (x, rest) = (index as i32 % below.size[0], index as i32 / below.size[0]);
-                    let place = [x, rest % below.size[1], rest / below.size[1]];
-                    ((low - p).max(p - high).max(DVec3::ZERO).length_squared(), place, index)
+                    let cell = [x, rest % below.size[1], rest / below.size[1]];
+                    (below.boxes[index].distance_squared(p), cell, index)
                 })
                 .collect();
             next.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.2.cmp(&a.2)));
-            waiting.extend(next.into_iter().map(|(_, place, index)| (rank - 1, place, index)));
+            stack.extend(next.into_iter().map(|(_, cell, index)| (rank - 1, cell, index)));
         }
     }
 
-    /// For each node the nearest in each sector: `sectors.count()` numbers a node, `u32::MAX` where there is none.
+    /// The nearest node in each sector of each node: `sectors.count()` numbers a node, `u32::MAX` where there is none.
     pub fn yao(&self, sectors: &Sectors) -> Vec<u32> {
         let count = sectors.count();
         let mut found = vec![u32::MAX; self.nodes.len() * count];
@@ -221,7 +220,7 @@ impl<'a> Neighbourhood<'a> {
         found
     }
 
-    /// For each node those with a higher number within `reach`, which is at most the cells' side.
+    /// For each node those with a higher number within `reach`, which must not exceed the cells' side.
     pub fn within(&self, reach: f64) -> Vec<Vec<u32>> {
         let one = |i: u32| {
             let p = self.nodes[i as usize];
@@ -237,7 +236,7 @@ impl<'a> Neighbourhood<'a> {
         (0..self.nodes.len() as u32).into_par_iter().map(one).collect()
     }
 
-    /// The node nearest to `p`; of several the first.
+    /// The node nearest to `p`; of equally near ones the first.
     pub fn nearest_to(&self, p: DVec3) -> Option<u32> {
         let mut best = (f64::INFINITY, u32::MAX);
         let at = self.cell(p);
@@ -257,7 +256,7 @@ fn min(a: (f64, u32), b: (f64, u32)) -> (f64, u32) {
     if b < a { b } else { a }
 }
 
-/// The cells of a level of this size that one of the level above covers.
+/// The cells, in a level of this size, under a cell of the level above.
 fn children(size: [i32; 3], at: [i32; 3]) -> impl Iterator<Item = usize> {
     let range = move |axis: usize| 2 * at[axis]..(2 * at[axis] + 2).min(size[axis]);
     range(2).flat_map(move |z| {

@@ -1,13 +1,13 @@
-//! Whole or not at all: files are written aside, then renamed.
+//! Atomic writes: a temporary file in the same folder, then a rename.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// Lets `write` fill a new file, which takes the place of `path` only when all went well.
+/// Writes `path` atomically: `write` fills a temporary file, which replaces `path` only on success.
 ///
 /// # Errors
-/// What `write` or the file system says; `path` is then as it was.
+/// Those of `write` and of the file system; `path` is then unchanged.
 pub fn write_whole(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> io::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::create_dir_all(folder)?;
@@ -16,19 +16,19 @@ pub fn write_whole(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io:
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // As any new file: the umask takes away what it should.
+        // As for any new file: the umask applies.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let aside = builder.tempfile_in(folder)?;
-    let mut buffer = BufWriter::with_capacity(1 << 16, aside.as_file());
+    let temporary = builder.tempfile_in(folder)?;
+    let mut buffer = BufWriter::with_capacity(1 << 16, temporary.as_file());
     write(&mut buffer)?;
     buffer.flush()?;
     drop(buffer);
-    aside.persist(path).map_err(|error| error.error)?;
+    temporary.persist(path).map_err(|error| error.error)?;
     Ok(())
 }
 
-/// [`write_whole`] for bytes at hand.
+/// [`write_whole`] of `bytes`.
 ///
 /// # Errors
 /// As [`write_whole`].
@@ -51,6 +51,6 @@ mod tests {
         });
         assert!(failed.is_err());
         assert_eq!(fs::read(&path).unwrap(), b"old");
-        assert_eq!(fs::read_dir(folder.path().join("a")).unwrap().count(), 1, "nothing is left aside");
+        assert_eq!(fs::read_dir(folder.path().join("a")).unwrap().count(), 1, "no temporary file is left");
     }
 }

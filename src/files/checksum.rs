@@ -1,34 +1,34 @@
-//! A line at the head of a text file that tells whether somebody has edited it since.
+//! A checksum line in a text file, which shows whether the file was edited after it was written.
 
-/// The word that marks the line.
-const MARK: &str = "lichtenberg-seal";
+use crate::math::fnv1a;
 
+/// The keyword of the line.
+const KEYWORD: &str = "lichtenberg-seal";
+
+/// The checksum of `text`, whatever its line ends.
 fn checksum(text: &str) -> u64 {
-    // FNV-1a, as for stream names: short, and the same everywhere.
-    text.bytes()
-        .filter(|&b| b != b'\r')
-        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
+    fnv1a(text.bytes().filter(|&b| b != b'\r'))
 }
 
-/// `text` with a comment line that has its checksum: at its head, or below a first line that is a comment of two signs, which
-/// tells what kind of file it is. `comment` starts a comment.
+/// Adds a comment line with the checksum of `text`: the first line, or the second below one that starts with `comment`
+/// twice and so declares the file's type (`##RenderMan`). `comment` is what starts a comment.
 #[must_use]
 pub fn seal(comment: &str, text: &str) -> String {
-    let line = format!("{comment} {MARK} {:016x}\n", checksum(text));
+    let line = format!("{comment} {KEYWORD} {:016x}\n", checksum(text));
     match text.split_once('\n') {
-        Some((kind, rest)) if kind.starts_with(&comment.repeat(2)) => format!("{kind}\n{line}{rest}"),
+        Some((declared, rest)) if declared.starts_with(&comment.repeat(2)) => format!("{declared}\n{line}{rest}"),
         _ => line + text,
     }
 }
 
-/// Is `text` anything but what [`seal`] returned?
+/// Does `text` differ from every result of [`seal`]: was it edited, or has it no checksum?
 #[must_use]
 pub fn is_edited(text: &str) -> bool {
     let mut lines = text.splitn(3, '\n');
     let (Some(first), Some(second)) = (lines.next(), lines.next()) else { return true };
     let third = lines.next();
     let sum = |line: &str| {
-        let (_, sum) = line.split_once(MARK)?;
+        let (_, sum) = line.split_once(KEYWORD)?;
         u64::from_str_radix(sum.trim(), 16).ok()
     };
     let rest = third.map_or(String::new(), |third| format!("\n{third}"));

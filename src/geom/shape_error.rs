@@ -1,0 +1,77 @@
+//! Why a shape as a scene writes it is no shape.
+
+use super::{ClosedMeshError, OutlineError, ProfileError};
+use crate::math::DVec3;
+
+/// Why a shape as a scene writes it is no shape.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ShapeError {
+    /// What [`super::ShapeFiles`] says of a file or step, or a name that is not defined.
+    #[error("{0}")]
+    Lookup(String),
+    /// A shape refers to itself.
+    #[error("shape `{0}` is made of itself")]
+    Circular(String),
+    /// A step's space refers to what the step grows.
+    #[error("step `{0}` grows in what it grew itself")]
+    CircularStep(String),
+    /// A combination of no shapes.
+    #[error("combine at least one shape")]
+    NoParts,
+    /// Two ends coincide.
+    #[error("{0} needs two different ends")]
+    SameEnds(&'static str),
+    /// A direction is the zero vector.
+    #[error("{0} needs a direction, not the zero vector")]
+    NoDirection(&'static str),
+    /// A box with a maximum below its minimum.
+    #[error("a box needs min below max, not {0} and {1}")]
+    Box(DVec3, DVec3),
+    /// An ellipsoid with a half-axis of 0 or less.
+    #[error("an ellipsoid needs half-axes above 0, not {0}")]
+    Ellipsoid(DVec3),
+    /// A cone without a radius.
+    #[error("a cone needs a radius above 0 at one end")]
+    Cone,
+    /// A shell without thickness.
+    #[error("a shell needs an `outside` or an `inside` above 0")]
+    Shell,
+    /// A sketch without a profile.
+    #[error("`{file}`: {error}")]
+    Sketch {
+        /// The sketch.
+        file: String,
+        /// What is wrong.
+        error: ProfileError,
+    },
+    /// A mesh that encloses no solid.
+    #[error("`{file}`: {error}")]
+    Mesh {
+        /// The mesh.
+        file: String,
+        /// What is wrong.
+        error: ClosedMeshError,
+    },
+    /// A picture without an outline.
+    #[error("`{file}`: {error}")]
+    Picture {
+        /// The picture.
+        file: String,
+        /// What is wrong.
+        error: OutlineError,
+    },
+    /// A text without an outline.
+    #[error("{text:?}: {error}")]
+    Letters {
+        /// The text.
+        text: String,
+        /// What is wrong.
+        error: OutlineError,
+    },
+}
+
+impl From<ShapeError> for String {
+    fn from(error: ShapeError) -> Self {
+        error.to_string()
+    }
+}
