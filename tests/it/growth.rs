@@ -1,17 +1,15 @@
 //! Growth by segments: every number that Amin's paper gives, the same plant on any number of threads, and bad input of growth
 //! by segments and by voxels.
 
-mod support;
-
 use std::fs;
 
+use crate::support::plants::{degrees, grown, load_text, only, scene, way};
+use crate::support::{embedded, refuses, run_in, text};
 use lichtenberg::files::embedded_scenes;
 use lichtenberg::grow::Method;
 use lichtenberg::math::DVec3;
 use lichtenberg::scene::{Override, Source, load_frame};
 use lichtenberg::skeleton::{Skeleton, measure};
-use support::plants::{degrees, grown, load_text, only, scene, way};
-use support::{embedded, refuses, run_in, text};
 
 /// Angle of `v` about `axis`, from a direction that depends on the axis alone, in degrees from 0 to 360.
 fn roll(v: DVec3, axis: DVec3) -> f64 {
@@ -409,7 +407,7 @@ fn each_segment_is_an_object() {
         let folder = tempfile::tempdir().unwrap();
         let output = run_in(folder.path(), &["export", figure, "--to", "pov", "-o", "."]);
         assert!(output.status.success(), "{}", text(&output.stderr));
-        let inc = support::files_below(folder.path(), "inc").remove(0);
+        let inc = crate::support::files_below(folder.path(), "inc").remove(0);
         let inc = fs::read_to_string(inc).unwrap();
         for name in ["Trunk", "Limbs", "Twigs"] {
             assert!(

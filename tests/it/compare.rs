@@ -1,12 +1,10 @@
 //! `compare` from outside: outcomes, exit codes, reports, and the project's own goldens.
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use support::{lichtenberg, root, run_in, succeed_in, text};
+use crate::support::{lichtenberg, root, run_in, succeed_in, text};
 
 /// Scenes whose small pictures are kept in `renders/golden/`, each with what its picture shows.
 const GOLDENS: [(&str, &str); 7] = [

@@ -1,16 +1,12 @@
 //! RIB by an independent reading: what a renderer would rebuild from the files is what the model says.
 
-#[path = "support/rib.rs"]
-mod rib;
-mod support;
-
+use crate::support::rib::{Primitive, World, point, read};
+use crate::support::{embedded, run_in, scene_names, succeed_in, text};
 use lichtenberg::export::{Origin, Rib, RibOptions, RibShadows, Templates};
 use lichtenberg::math::{DVec3, Progress};
 use lichtenberg::model::{Camera, Model, Object, Projection};
 use lichtenberg::scene::{grow, model};
 use rayon::prelude::*;
-use rib::{Primitive, World, point, read};
-use support::{embedded, run_in, scene_names, succeed_in, text};
 
 fn modelled(name: &str) -> Model {
     let scene = embedded(name, &[]);
@@ -262,7 +258,7 @@ fn a_renderer_that_speaks_has_failed() {
         std::fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
         std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
         let path = format!("{}:/usr/bin:/bin", bin.display());
-        let mut command = support::lichtenberg();
+        let mut command = crate::support::lichtenberg();
         command.current_dir(folder.path()).env("PATH", path);
         command
             .args(["render", "papers/2007-fig03", "--with", "pixie", "--size", "32x24", "-o", "out.png"])
@@ -277,7 +273,7 @@ fn a_renderer_that_speaks_has_failed() {
     assert!(text(&output.stderr).contains("no picture"));
     assert!(!folder.path().join("out.png").exists());
     // Without it, a hint.
-    let output = support::lichtenberg()
+    let output = crate::support::lichtenberg()
         .current_dir(folder.path())
         .env("PATH", "/nowhere")
         .args(["render", "papers/2007-fig03", "--with", "aqsis", "-o", "out.png"])

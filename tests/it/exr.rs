@@ -1,11 +1,9 @@
 //! OpenEXR files as others read them: OpenImageIO and OpenEXR's own tools, from Debian.
 
-mod support;
-
 use std::path::Path;
 use std::process::Command;
 
-use support::{openimageio, succeed_in, text};
+use crate::support::{openimageio, succeed_in, text};
 
 /// Reads every channel with OpenImageIO's Python module, decodes the mattes after the specification with code of its
 /// own, and prints what it found, a fact a line.

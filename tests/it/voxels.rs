@@ -1,12 +1,10 @@
 //! Growth by voxels: what the automaton promises.
 
-mod support;
-
+use crate::support::plants::{degrees, grown, only, scene, way};
 use lichtenberg::math::DVec3;
 use lichtenberg::scene::check_claims;
 use lichtenberg::skeleton::{Skeleton, nearest};
 use proptest::prelude::*;
-use support::plants::{degrees, grown, only, scene, way};
 
 /// How far two segments of a skeleton are related: nodes from the nearer to a common ancestor.
 fn relation(s: &Skeleton, a: u32, b: u32) -> usize {

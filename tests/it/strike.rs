@@ -1,14 +1,12 @@
 //! `strike` from outside: photographs made and pictures read by OpenImageIO, bad plates, sequences, and a real storm.
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 
+use crate::support::{embedded, openimageio, run_in, succeed_in, text};
 use lichtenberg::math::Progress;
 use lichtenberg::scene::grow;
 use lichtenberg::skeleton::apart;
-use support::{embedded, openimageio, run_in, succeed_in, text};
 
 /// Where Debian's `colord-data` has the profile.
 const ADOBE_RGB: &str = "/usr/share/color/icc/colord/AdobeRGB1998.icc";

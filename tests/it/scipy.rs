@@ -1,7 +1,5 @@
 //! The planner's costs are scipy's, on graphs that the library exports: the comparison that the benches repeat at size.
 
-mod support;
-
 use std::process::Command;
 
 #[test]
@@ -13,9 +11,9 @@ fn costs_equal_scipys() {
     };
     let python = candidates.into_iter().find(has_scipy);
     let python = python.expect("this test needs Python with scipy: run ./run-tests, or apt-get install python3-scipy");
-    let script = support::root().join("benches/compare_scipy.py");
+    let script = crate::support::root().join("benches/compare_scipy.py");
     let output = Command::new(python).arg(script).arg("--small").output().expect("python starts");
-    let said = support::text(&output.stdout);
-    assert!(output.status.success(), "{said}{}", support::text(&output.stderr));
+    let said = crate::support::text(&output.stdout);
+    assert!(output.status.success(), "{said}{}", crate::support::text(&output.stderr));
     assert_eq!(said.matches("costs equal").count(), 6, "{said}");
 }

@@ -1,13 +1,11 @@
 //! What the README shows works as it stands there: its commands, its scene, its POV-Ray snippet.
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use support::{lichtenberg, require_povray, root, run_in, succeed_in, text};
+use crate::support::{lichtenberg, require_povray, root, run_in, succeed_in, text};
 
 /// The fenced blocks of the README in this language.
 fn blocks(language: &str) -> Vec<String> {

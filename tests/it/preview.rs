@@ -1,20 +1,18 @@
 //! The preview: alone on the machine, beside the real povray, on any number of threads, interrupted, watching.
 #![cfg(unix)]
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use crate::support::{embedded, lichtenberg, require_povray, run_in, scene_names, small_variant, succeed_in, text};
 use lichtenberg::compare::{Metric, measure};
 use lichtenberg::files::{Rgba, decode_linear, decode_png};
 use lichtenberg::math::Progress;
 use lichtenberg::scene::{grow, model};
 use lichtenberg::trace::{Look, View, World, render};
 use rayon::prelude::*;
-use support::{embedded, lichtenberg, require_povray, run_in, scene_names, small_variant, succeed_in, text};
 
 fn picture(path: &Path) -> Rgba {
     decode_png(&fs::read(path).unwrap()).unwrap()

@@ -1,7 +1,7 @@
-//! What several test programs share.
-#![allow(dead_code, reason = "each test program uses a part")]
+//! What several tests share.
 
 pub mod plants;
+pub mod rib;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -1,15 +1,13 @@
 //! Dendrites, surfaces, regions and letters of Xu and Mould 2007: what they promise, and what bad input gets.
 
-mod support;
-
 use std::fs;
 
+use crate::support::{embedded, run_in, text};
 use lichtenberg::grow::Grown;
 use lichtenberg::math::{DVec3, Progress};
 use lichtenberg::model::Model;
 use lichtenberg::scene::{grow, model};
 use proptest::prelude::*;
-use support::{embedded, run_in, text};
 
 fn grown(name: &str, overrides: &[(&str, &str)]) -> (Vec<Grown>, Model) {
     let scene = embedded(name, overrides);

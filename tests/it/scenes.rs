@@ -1,11 +1,9 @@
 //! Every embedded scene: what it claims, and the same bytes everywhere.
 
-mod support;
-
+use crate::support::{embedded, scene_names};
 use lichtenberg::export::{Origin, Pov, SvgOptions, Templates, write_svg};
 use lichtenberg::math::Progress;
 use lichtenberg::scene::{Resolved, check_claims, grow, model};
-use support::{embedded, scene_names};
 
 /// What the scene's exported files are, in one number: FNV-1a over the include file and the schematic.
 fn digest(scene: &Resolved) -> u64 {
@@ -77,7 +75,7 @@ fn files_are_the_same_everywhere() {
         assert_eq!(digests[0], digests[1], "{name} depends on the number of threads");
         lines.push_str(&format!("{:016x} {name}\n", digests[0]));
     }
-    let path = support::root().join("tests/digests.txt");
+    let path = crate::support::root().join("tests/digests.txt");
     if std::env::var_os("UPDATE").is_some() {
         std::fs::write(&path, &lines).unwrap();
     }

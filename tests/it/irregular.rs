@@ -1,14 +1,12 @@
 //! Irregular trees through the whole program: bad input, form, meshes, levels, shade.
 
-mod support;
-
 use std::fs;
 
+use crate::support::{embedded, export_changed, refuses, run_in, scene_names, succeed_in, text};
 use lichtenberg::files::decode_ply;
 use lichtenberg::geom::ClosedMesh;
 use lichtenberg::math::Progress;
 use lichtenberg::scene::{grow, model};
-use support::{embedded, export_changed, refuses, run_in, scene_names, succeed_in, text};
 
 const TREE: &str = r#"
 title = "Tree"

@@ -1,7 +1,5 @@
 //! Mutated scenes: `check` and `export` never panic and never hang.
 
-mod support;
-
 use lichtenberg::export::{Origin, Pov, Templates};
 use lichtenberg::files::embedded_scenes;
 use lichtenberg::math::Progress;

@@ -1,16 +1,14 @@
 //! The real povray: every embedded scene, the include file in foreign scenes, failures and signals.
 #![cfg(unix)]
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
+use crate::support::{lichtenberg, require_povray, run_in, scene_names, small_variant, succeed_in, text};
 use lichtenberg::files::{Rgba, decode_png};
 use rayon::prelude::*;
-use support::{lichtenberg, require_povray, run_in, scene_names, small_variant, succeed_in, text};
 
 /// Runs povray itself on `scene` in `folder`; it must succeed without a warning.
 fn povray(folder: &Path, scene: &str, extra: &[&str]) -> Rgba {
@@ -33,7 +31,7 @@ fn covered(picture: &Rgba) -> f64 {
 }
 
 /// In the studio look; the figures of 2012, which differ in their trees alone, are rendered in the exact one by
-/// `tests/preview.rs`.
+/// `preview.rs`.
 #[test]
 fn every_scene_renders_without_a_warning() {
     require_povray();
