@@ -1,14 +1,14 @@
 //! The preview beside the real povray: the same trees, the same rays (exact look, 1280 x 720, one sample a
 //! pixel and the ten of the default), whole processes, the fastest of three runs each.
 //!
-//! `cargo bench --bench povray`; needs povray. With numbers it renders the tree of so many segments with so many
-//! samples itself, as one process: `cargo bench --bench povray -- 100000 1`.
-#![allow(clippy::print_stdout)]
+//! `cargo bench -- povray`; needs povray. With numbers it renders the tree of so many segments with so many
+//! samples itself, as one process: `cargo bench -- povray 100000 1`.
 
 use std::fs;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
+use crate::trees::tree;
 use lichtenberg::export::{Origin, Pov, Templates};
 use lichtenberg::files::{Rgba, encode_png};
 use lichtenberg::math::{Colour, DVec3, Progress, srgb_byte};
@@ -16,13 +16,11 @@ use lichtenberg::model::{Ball, Camera, Digits, Instance, Light, Material, Mesh, 
 use lichtenberg::trace::{Look, View, World, render};
 use rayon::prelude::*;
 
-mod support;
-
 const SIZE: [u32; 2] = [1280, 720];
 
 fn model(count: usize) -> Model {
     let digits = Digits(5);
-    let cones = support::tree(count);
+    let cones = tree(count);
     let ball = |centre: DVec3, radius: f64| Ball {
         centre: digits.round_point(centre),
         radius: digits.round(radius),
@@ -88,7 +86,7 @@ fn fastest(mut run: impl FnMut() -> Command) -> f64 {
     times.fold(f64::INFINITY, f64::min)
 }
 
-fn main() {
+pub fn run() {
     let numbers: Vec<u32> = std::env::args().filter_map(|arg| arg.parse().ok()).collect();
     if let [count, samples] = numbers[..] {
         return ours(count as usize, samples);
@@ -110,7 +108,7 @@ fn main() {
             });
             let own = fastest(|| {
                 let mut program = Command::new(std::env::current_exe().expect("our own path"));
-                program.current_dir(folder.path()).args([count.to_string(), samples.to_string()]);
+                program.current_dir(folder.path()).args(["povray".to_owned(), count.to_string(), samples.to_string()]);
                 program
             });
             let ratio = theirs / own;

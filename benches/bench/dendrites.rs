@@ -1,15 +1,12 @@
 //! Dendrites, surfaces and moss: Tables 1 and 2 of Xu and Mould 2007 beside the paper's times, Fig. 11's aggregate beside its
 //! imitation, surfaces beside scikit-image's (where python3 has it), and a million strands. Times are of growth, medians; one
 //! thread unless told. `--quick` leaves out the textbook's aggregate, which takes minutes.
-#![allow(clippy::print_stdout, reason = "it is a report")]
-
-#[path = "support/clock.rs"]
-mod clock;
 
 use std::process::Command;
 use std::time::Instant;
 
-use clock::median;
+use crate::Failure;
+use crate::clock::median;
 use lichtenberg::export::{Origin, Pov, Rib, RibOptions, Templates};
 use lichtenberg::files::{Folder, embedded_scenes};
 use lichtenberg::geom::Surface;
@@ -18,8 +15,6 @@ use lichtenberg::math::{Progress, mix};
 use lichtenberg::scene::{Override, Resolved, Source, grow, load, model};
 use lichtenberg::skeleton::dimension;
 use lichtenberg::trace::{Look, View, World, render};
-
-type Failure = Box<dyn std::error::Error>;
 
 /// Each is run this often, and the median told.
 const RUNS: usize = 9;
@@ -205,7 +200,7 @@ impl std::io::Write for Count<'_> {
     }
 }
 
-fn main() -> Result<(), Failure> {
+pub fn run() -> Result<(), Failure> {
     let quick = std::env::args().any(|arg| arg == "--quick");
     // First, while nothing else has taken memory.
     moss()?;

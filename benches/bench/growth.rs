@@ -1,17 +1,12 @@
 //! Growth by segments and by voxels: a plant of a million nodes, and ivy of 50,000, on one thread and on two. Times are of
 //! growth with its widths, medians.
-#![allow(clippy::print_stdout, reason = "it is a report")]
 
-#[path = "support/clock.rs"]
-mod clock;
-
-use clock::median;
+use crate::Failure;
+use crate::clock::median;
 use lichtenberg::files::Folder;
 use lichtenberg::grow::Grown;
 use lichtenberg::math::Progress;
 use lichtenberg::scene::{Resolved, Source, grow, load};
-
-type Failure = Box<dyn std::error::Error>;
 
 /// Each is run this often, and the median told.
 const RUNS: usize = 11;
@@ -25,11 +20,11 @@ fn grown(scene: &Resolved) -> Vec<Grown> {
     grow(scene, &[], u64::MAX, &Progress::default()).expect("it grows")
 }
 
-fn main() -> Result<(), Failure> {
+pub fn run() -> Result<(), Failure> {
     println!("{:<34} {:>9} {:>10} {:>10} {:>7}", "model", "nodes", "one", "two", "ratio");
     for (what, text) in [
-        ("plant by segments", include_str!("scenes/million-plant.toml")),
-        ("ivy by voxels", include_str!("scenes/ivy-50k.toml")),
+        ("plant by segments", include_str!("../scenes/million-plant.toml")),
+        ("ivy by voxels", include_str!("../scenes/ivy-50k.toml")),
     ] {
         let scene = scene(text)?;
         let nodes: usize = grown(&scene).iter().map(|g| g.skeleton.nodes.len()).sum();

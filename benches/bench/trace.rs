@@ -1,8 +1,7 @@
 //! Ray queries, side by side with Embree where a C++ compiler and its library are there.
 //!
-//! `cargo bench --bench trace` prints, for branching trees of 10k, 100k and 1M segments: build times, and rays a second
+//! `cargo bench -- trace` prints, for branching trees of 10k, 100k and 1M segments: build times, and rays a second
 //! on one core of primary, shadow and ambient-occlusion rays, ours and Embree's on the same files.
-#![allow(clippy::print_stdout)]
 
 use std::fs;
 use std::io::Write;
@@ -10,12 +9,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
+use crate::trees::tree;
 use lichtenberg::bvh::{Cones, Ray, RoundCone};
 use lichtenberg::math::{DVec3, Stream};
 use rand::RngExt;
-
-mod support;
-use support::tree;
 
 const WIDTH: usize = 1280;
 const HEIGHT: usize = 720;
@@ -101,7 +98,7 @@ fn embree(folder: &Path) -> Option<PathBuf> {
     None
 }
 
-fn main() {
+pub fn run() {
     let folder = tempfile::tempdir().expect("a folder");
     let embree = embree(folder.path());
     for count in [10_000, 100_000, 1_000_000] {

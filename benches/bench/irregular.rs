@@ -1,13 +1,10 @@
 //! Irregular trees: Table 1 of Xu and Mould 2012 beside the paper's times, and how scattering a graph and planning in it
 //! grows with its nodes. `--plot FILE` draws the latter.
-#![allow(clippy::print_stdout, reason = "it is a report")]
-
-#[path = "support/clock.rs"]
-mod clock;
 
 use std::time::Instant;
 
-use clock::median;
+use crate::Failure;
+use crate::clock::median;
 use lichtenberg::files::Folder;
 use lichtenberg::graph::{Joining, Node, Region, Scatter, ScatterPlan, Sectors, WeightTable, Weights};
 use lichtenberg::math::{DVec3, Progress, Stream};
@@ -29,7 +26,7 @@ impl Region for Cube {
     }
 }
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+pub fn run() -> Result<(), Failure> {
     println!("Table 1 of Xu and Mould 2012: growth, widths included, on {} threads", rayon::current_num_threads());
     println!("{:<10} {:>9} {:>9} {:>10} {:>9} {:>8}", "figure", "nodes", "endpoints", "the paper", "ours", "ratio");
     for (figure, paper) in [("20", 32.4), ("25", 4.5), ("27", 20.0)] {

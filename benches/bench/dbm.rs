@@ -1,9 +1,8 @@
 //! Lightning by path planning beside the dielectric breakdown model, on a lattice of 512 by 512.
 //!
-//! `cargo bench --bench dbm` prints the seconds of each, for bolts of about as many segments: ours, the model as Kim and Lin
+//! `cargo bench -- dbm` prints the seconds of each, for bolts of about as many segments: ours, the model as Kim and Lin
 //! (2004) solve it (conjugate gradients with an incomplete Cholesky factor, from the last solution on), and the fastest
 //! solver that is known for it, point charges without a grid (Kim et al. 2007), which knows no ground.
-#![allow(clippy::print_stdout)]
 
 use std::time::Instant;
 
@@ -43,7 +42,7 @@ grow = ["bolt"]
     (seconds[runs / 2], nodes)
 }
 
-fn main() {
+pub fn run() {
     let width = "width.constant = 1";
     let ground = "to.ground = { count = 500, inside = { box = { min = [0, 0], max = [511, 0] } } }";
     let (simulated, nodes) = time(

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::io;
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use crate::clock::median;
 use lichtenberg::export::{Origin, Pov, Templates};
 use lichtenberg::math::{Colour, DVec3, Stream};
 use lichtenberg::model::{Ball, Camera, CameraSpec, Digits, Instance, Material, Mesh, Model, Object, Sky};
@@ -51,19 +51,13 @@ fn million() -> Model {
     }
 }
 
-fn export(c: &mut Criterion) {
+pub fn run() {
     let model = million();
     let templates = Templates::default();
     let pov = Pov::new(&model, &templates, "million", [640, 480], &Origin::default());
     let mut text = Vec::new();
     pov.write_inc(&mut text).expect("nothing can fail");
-    let mut group = c.benchmark_group("export");
-    group.throughput(Throughput::Bytes(text.len() as u64)).sample_size(10);
-    group.bench_function("a million primitives to POV-Ray", |b| {
-        b.iter(|| black_box(&pov).write_inc(io::sink()).expect("nothing can fail"));
-    });
-    group.finish();
+    let seconds = median(|| black_box(&pov).write_inc(io::sink()).expect("nothing can fail"), 11);
+    let rate = text.len() as f64 / seconds * 1e-6;
+    println!("a million primitives to POV-Ray: {seconds:.3} s, {rate:.0} MB/s");
 }
-
-criterion_group!(benches, export);
-criterion_main!(benches);
