@@ -220,7 +220,7 @@ fn letters_stand_upright() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig::with_cases(24))]
 
     /// Endpoints of an iteration are as many as the pseudocode says, no farther from the structure before than it says, and paths
     /// never cross.

@@ -4,6 +4,7 @@ mod architecture;
 mod command;
 mod compare;
 mod dendrites;
+mod digests;
 mod exr;
 mod geometry;
 mod growth;

@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use crate::support::sample::sample;
 use crate::support::{embedded, lichtenberg, require_povray, run_in, scene_names, small_variant, succeed_in, text};
 use lichtenberg::compare::{Metric, measure};
 use lichtenberg::files::{Rgba, decode_linear, decode_png};
@@ -41,14 +42,16 @@ fn needs_nothing_else() {
     assert!((800..9000).contains(&dark), "{dark} dark pixels are no elm");
 }
 
-/// Every scene in space agrees with the real povray in the exact look: no pixel is off by more than 1/255, but for one
+/// Every scene in space - a sample, unless all are asked for - agrees with the real povray in the exact look: no pixel is off by more than 1/255, but for one
 /// in a thousand at silhouettes. Without samples, and with `+A0.0 +AM1 +R3` where scenes differ in more than their tree.
 #[test]
 fn agrees_with_povray_to_the_pixel() {
     require_povray();
     let is_panel = |name: &str| name.starts_with("papers/2012");
     let mut work: Vec<(String, &str)> = Vec::new();
-    for name in scene_names().into_iter().filter(|name| !embedded(name, &[]).is_flat) {
+    let names: Vec<String> = scene_names().into_iter().filter(|name| !embedded(name, &[]).is_flat).collect();
+    assert!(names.len() >= 45, "scenes in space");
+    for name in sample(names, 12) {
         if !is_panel(&name) {
             work.push((name.clone(), "9"));
         }
@@ -70,7 +73,6 @@ fn agrees_with_povray_to_the_pixel() {
             format!("{name} {samples}: {off} of 19200 pixels")
         })
         .collect();
-    assert!(told.len() >= 70, "every scene in space");
     let worst = |line: &String| line.split(' ').nth(2).and_then(|n| n.parse::<u32>().ok()).unwrap_or(u32::MAX);
     assert!(told.iter().all(|line| worst(line) <= 19), "{}", told.join("\n"));
 }

@@ -1,12 +1,11 @@
 //! RIB by an independent reading: what a renderer would rebuild from the files is what the model says.
 
 use crate::support::rib::{Primitive, World, point, read};
-use crate::support::{embedded, run_in, scene_names, succeed_in, text};
+use crate::support::{embedded, run_in, succeed_in, text};
 use lichtenberg::export::{Origin, Rib, RibOptions, RibShadows, Templates};
 use lichtenberg::math::{DVec3, Progress};
 use lichtenberg::model::{Camera, Model, Object, Projection};
 use lichtenberg::scene::{grow, model};
-use rayon::prelude::*;
 
 fn modelled(name: &str) -> Model {
     let scene = embedded(name, &[]);
@@ -150,41 +149,38 @@ fn check_camera(model: &Model, world: &World, scene: &str) {
     }
 }
 
-#[test]
-fn every_scene_reads_back() {
-    scene_names().par_iter().for_each(|name| {
-        let model = modelled(name);
-        let (scene, archive) = exported(&model, RibOptions::default());
-        let world = read(&scene, &archive);
-        check_camera(&model, &world, name);
-        let objects: Vec<_> = world.objects.iter().filter(|(found, ..)| found != "sky" && found != "ground").collect();
-        assert_eq!(objects.len(), model.objects.len(), "{name}");
-        for (object, (.., surface, colour, primitives)) in model.objects.iter().zip(objects) {
-            check_object(object, primitives, name);
-            let (_, material) = &model.materials[object.material];
-            let expected = if material.diffuse == 0.0 && material.ambient == 0.0 {
-                "constant"
-            } else if material.specular.max(material.phong) > 0.0 {
-                "plastic"
-            } else {
-                "matte"
-            };
-            assert_eq!(surface, expected, "{name}");
-            if expected != "constant" {
-                assert!(near(*colour, DVec3::from_array(material.mean_colour().0), 1.0), "{name}");
-            }
+/// What a renderer would rebuild from the model's files is what the model says.
+pub fn reads_back(model: &Model, name: &str) {
+    let (scene, archive) = exported(model, RibOptions::default());
+    let world = read(&scene, &archive);
+    check_camera(model, &world, name);
+    let objects: Vec<_> = world.objects.iter().filter(|(found, ..)| found != "sky" && found != "ground").collect();
+    assert_eq!(objects.len(), model.objects.len(), "{name}");
+    for (object, (.., surface, colour, primitives)) in model.objects.iter().zip(objects) {
+        check_object(object, primitives, name);
+        let (_, material) = &model.materials[object.material];
+        let expected = if material.diffuse == 0.0 && material.ambient == 0.0 {
+            "constant"
+        } else if material.specular.max(material.phong) > 0.0 {
+            "plastic"
+        } else {
+            "matte"
+        };
+        assert_eq!(surface, expected, "{name}");
+        if expected != "constant" {
+            assert!(near(*colour, DVec3::from_array(material.mean_colour().0), 1.0), "{name}");
         }
-        // An ambient light of the renderer's own, then the scene's.
-        assert_eq!(world.lights.len(), 1 + model.lights.len());
-        for (light, found) in model.lights.iter().zip(&world.lights[1..]) {
-            let value = |key: &str| DVec3::from_slice(&found.parameters[key]);
-            assert!((value("color lightcolor") - DVec3::from_array(light.colour().0)).length() < 1e-5);
-            if let lichtenberg::model::Light::Sun { towards, .. } = light {
-                assert_eq!(found.shader, "distantlight");
-                assert!((value("point from") - value("point to") - *towards).length() < 1e-5);
-            }
+    }
+    // An ambient light of the renderer's own, then the scene's.
+    assert_eq!(world.lights.len(), 1 + model.lights.len());
+    for (light, found) in model.lights.iter().zip(&world.lights[1..]) {
+        let value = |key: &str| DVec3::from_slice(&found.parameters[key]);
+        assert!((value("color lightcolor") - DVec3::from_array(light.colour().0)).length() < 1e-5);
+        if let lichtenberg::model::Light::Sun { towards, .. } = light {
+            assert_eq!(found.shader, "distantlight");
+            assert!((value("point from") - value("point to") - *towards).length() < 1e-5);
         }
-    });
+    }
 }
 
 #[test]

@@ -1,41 +1,83 @@
 //! Every embedded scene: what it claims, and the same bytes everywhere.
 
-use crate::support::{embedded, scene_names};
-use lichtenberg::export::{Origin, Pov, SvgOptions, Templates, write_svg};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::LazyLock;
+
+use lichtenberg::grow::Grown;
 use lichtenberg::math::Progress;
 use lichtenberg::scene::{Resolved, check_claims, grow, model};
+use rayon::prelude::*;
 
-/// What the scene's exported files are, in one number: FNV-1a over the include file and the schematic.
-fn digest(scene: &Resolved) -> u64 {
-    let grown = grow(scene, &[], u64::MAX, &Progress::default()).unwrap();
-    let model = model(scene, &grown, [320, 240]).unwrap();
-    let mut bytes = Vec::new();
-    let templates = Templates::default();
-    let origin = Origin { command: "test".to_owned(), seed: scene.seed };
-    Pov::new(&model, &templates, "digest", [320, 240], &origin).write_inc(&mut bytes).unwrap();
-    write_svg(&model, SvgOptions { size: [320, 240] }, &mut bytes).unwrap();
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
+use crate::support::{embedded, panic_text, scene_names};
+
+/// What the checks found in a scene; `Err` has what one of them said.
+struct Checked {
+    digests: Result<String, String>,
+    claims: Result<(), String>,
+    rib: Result<(), String>,
+    plants: Result<usize, String>,
+}
+
+/// Each scene is grown once for all checks that want every scene, on two threads; tests/bytes.rs has one.
+static CHECKED: LazyLock<Vec<Checked>> = LazyLock::new(|| {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+    pool.install(|| scene_names().par_iter().map(|name| check(name)).collect())
+});
+
+fn check(name: &str) -> Checked {
+    let scene = embedded(name, &[]);
+    let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
+    let model = model(&scene, &grown, [320, 240]).unwrap();
+    Checked {
+        digests: told(|| crate::digests::digests(name, &scene, &model)),
+        claims: told(|| claims_hold(name, &scene, &grown)),
+        rib: told(|| crate::rib::reads_back(&model, name)),
+        plants: told(|| crate::irregular::widths_fall(name, &scene, &grown)),
+    }
+}
+
+/// What a check returns, or the words that it panics with.
+fn told<T>(check: impl FnOnce() -> T) -> Result<T, String> {
+    catch_unwind(AssertUnwindSafe(check)).map_err(|cause| panic_text(&*cause))
+}
+
+/// What a check found in every scene; those where it failed are told together.
+fn of_every_scene<T>(found: impl Fn(&'static Checked) -> &'static Result<T, String>) -> Vec<&'static T> {
+    let (good, bad): (Vec<_>, Vec<_>) = CHECKED.iter().map(|checked| found(checked).as_ref()).partition(Result::is_ok);
+    let bad: Vec<&String> = bad.into_iter().filter_map(Result::err).collect();
+    assert!(bad.is_empty(), "{bad:#?}");
+    good.into_iter().filter_map(Result::ok).collect()
+}
+
+fn claims_hold(name: &str, scene: &Resolved, grown: &[Grown]) {
+    let findings = check_claims(scene, grown);
+    assert_eq!(findings.len(), scene.claims.len(), "{name}: every claim is measured");
+    assert!(!findings.is_empty(), "{name} claims nothing");
+    for finding in findings {
+        assert!(
+            finding.holds,
+            "{name}: {} ({}): {}, not {}",
+            finding.claim, finding.says, finding.measured, finding.against
+        );
+    }
 }
 
 #[test]
 fn scenes_hold_what_they_claim() {
-    let mut claims = 0;
-    for name in scene_names() {
-        let scene = embedded(&name, &[]);
-        let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
-        let findings = check_claims(&scene, &grown);
-        assert_eq!(findings.len(), scene.claims.len(), "{name}: every claim is measured");
-        assert!(!findings.is_empty(), "{name} claims nothing");
-        for finding in findings {
-            claims += 1;
-            assert!(
-                finding.holds,
-                "{name}: {} ({}): {}, not {}",
-                finding.claim, finding.says, finding.measured, finding.against
-            );
-        }
-    }
-    assert!(claims >= 25);
+    of_every_scene(|checked| &checked.claims);
+}
+
+/// What a renderer would rebuild from the RIB is what the model says.
+#[test]
+fn every_scene_reads_back() {
+    of_every_scene(|checked| &checked.rib);
+}
+
+/// Along every limb of every plant width never grows towards the tip, nor do limbs float.
+#[test]
+fn width_never_grows_towards_the_tip() {
+    let plants: usize = of_every_scene(|checked| &checked.plants).into_iter().sum();
+    assert!(plants > 60);
 }
 
 /// A claim must be able to fail: with other weights, those of Fig. 1 and Fig. 2 do.
@@ -62,24 +104,11 @@ fn claims_can_fail() {
     }
 }
 
-/// One and two threads give the same files, and every build gives those of tests/digests.txt: run in the profiles
-/// dev, test and release by ./run-tests. UPDATE=1 accepts new digests, which is a new edition for artists.
+/// The same bytes as tests/digests.txt has, and so as every other build and number of threads gives.
 #[test]
 fn files_are_the_same_everywhere() {
-    let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    let (one, two) = (pool(1), pool(2));
-    let mut lines = String::new();
-    for name in scene_names() {
-        let scene = embedded(&name, &[]);
-        let digests = [one.install(|| digest(&scene)), two.install(|| digest(&scene))];
-        assert_eq!(digests[0], digests[1], "{name} depends on the number of threads");
-        lines.push_str(&format!("{:016x} {name}\n", digests[0]));
-    }
-    let path = crate::support::root().join("tests/digests.txt");
-    if std::env::var_os("UPDATE").is_some() {
-        std::fs::write(&path, &lines).unwrap();
-    }
-    assert_eq!(lines, std::fs::read_to_string(&path).unwrap_or_default(), "exported files have changed");
+    let lines: String = of_every_scene(|checked| &checked.digests).into_iter().map(String::as_str).collect();
+    crate::digests::compare(&lines);
 }
 
 /// Fig. 6: adding endpoints keeps those already placed, and the paths to them.

@@ -12,7 +12,12 @@ fn costs_equal_scipys() {
     let python = candidates.into_iter().find(has_scipy);
     let python = python.expect("this test needs Python with scipy: run ./run-tests, or apt-get install python3-scipy");
     let script = crate::support::root().join("benches/compare_scipy.py");
-    let output = Command::new(python).arg(script).arg("--small").output().expect("python starts");
+    let output = Command::new(python)
+        .arg(script)
+        .arg("--small")
+        .arg(crate::support::example("graph"))
+        .output()
+        .expect("python starts");
     let said = crate::support::text(&output.stdout);
     assert!(output.status.success(), "{said}{}", crate::support::text(&output.stderr));
     assert_eq!(said.matches("costs equal").count(), 6, "{said}");

@@ -2,6 +2,7 @@
 
 pub mod plants;
 pub mod rib;
+pub mod sample;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -97,6 +98,32 @@ pub fn openimageio(folder: &Path, script: &str, args: &[&str]) -> String {
         text(&output.stderr)
     );
     text(&output.stdout)
+}
+
+/// A program of `examples/` as `cargo test` has just built it; built now if it was not, as with `cargo test --test it`.
+pub fn example(name: &str) -> PathBuf {
+    let here = std::env::current_exe().expect("our own path");
+    let program = here.parent().and_then(Path::parent).expect("target/PROFILE/deps").join("examples").join(name);
+    let changed = |path: &Path| path.metadata().and_then(|m| m.modified()).ok();
+    let mut sources = files_below(&root().join("src"), "rs");
+    sources.extend(files_below(&root().join("examples"), "rs"));
+    let newest = sources.iter().filter_map(|path| changed(path)).max();
+    if changed(&program) < newest {
+        let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
+        let status = Command::new(cargo)
+            .current_dir(root())
+            .args(["test", "--quiet", "--no-run", "--example", name])
+            .status()
+            .expect("cargo starts");
+        assert!(status.success(), "{name} is built");
+    }
+    program
+}
+
+/// The words of a panic.
+pub fn panic_text(cause: &dyn std::any::Any) -> String {
+    let plain = cause.downcast_ref::<&str>().map(|&text| text.to_owned());
+    plain.or_else(|| cause.downcast_ref::<String>().cloned()).unwrap_or_default()
 }
 
 /// The root of the repository.
