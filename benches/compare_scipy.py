@@ -1,10 +1,10 @@
 """Plans the same graphs with Lichtenberg and with scipy, checks that the costs are equal, and prints the ratio.
 
     pip install -r benches/requirements.txt
-    python benches/compare_scipy.py [--small]
+    python benches/compare_scipy.py [--small PROGRAM]
 
 The graphs are those that the library exports (examples/graph.rs); weights are integers, so that costs must be equal
-to the last bit. --small is what the tests run.
+to the last bit. --small is what the tests run, with the example that they have built.
 """
 import json
 import subprocess
@@ -21,9 +21,8 @@ LARGE = [(4, 2048, 3, 1), (8, 2048, 3, 1), (6, 80, 3, 1), (18, 80, 3, 1), (26, 8
 SMALL = [(4, 200, 3, 1), (8, 200, 1, 1), (6, 40, 3, 1), (18, 30, 2, 1), (26, 30, 3, 1), (6, 150, 3, 2)]
 
 
-def compare(neighbours, side, alpha, threads, profile):
+def compare(neighbours, side, alpha, threads, command):
     with tempfile.TemporaryDirectory() as folder:
-        command = ["cargo", "run", "--profile", profile, "--quiet", "--example", "graph", "--"]
         call = [str(a) for a in (neighbours, side, alpha, folder, threads)]
         said = subprocess.run(command + call, check=True, capture_output=True, text=True, cwd=Path(__file__).parent.parent)
         ours = json.loads(said.stdout)
@@ -48,7 +47,9 @@ def compare(neighbours, side, alpha, threads, profile):
     )
 
 
-# The tests hold costs alone, in the profile that they were built in; times are the release's.
-is_small = "--small" in sys.argv
-for case in SMALL if is_small else LARGE:
-    compare(*case, "test" if is_small else "release")
+if "--small" in sys.argv:
+    for case in SMALL:
+        compare(*case, [sys.argv[2]])
+else:
+    for case in LARGE:
+        compare(*case, ["cargo", "run", "--release", "--quiet", "--example", "graph", "--"])

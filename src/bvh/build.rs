@@ -158,3 +158,62 @@ fn gather(binary: &Binary, root: &Bvh2Node) -> [u32; WIDTH] {
     }
     block
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+
+    use super::*;
+    use crate::math::Stream;
+
+    fn boxes(count: usize) -> Vec<Aabb> {
+        let mut random = Stream::new(1, "boxes");
+        (0..count)
+            .map(|_| {
+                let min: [f32; 3] = std::array::from_fn(|_| random.random_range(-5.0..5.0));
+                Aabb { min, max: min.map(|x| x + random.random_range(0.0..0.5)) }
+            })
+            .collect()
+    }
+
+    /// Every box is in one slot of one block, and walks need no more stack than there is.
+    fn holds_all(boxes: &[Aabb]) {
+        let wide = build(boxes, 0.0);
+        let mut slots: Vec<u32> = wide.blocks.iter().flatten().copied().filter(|&slot| slot != EMPTY).collect();
+        slots.sort_unstable();
+        assert!(slots.into_iter().eq(0..boxes.len() as u32));
+        assert!(wide.waiting <= STACK, "{}", wide.waiting);
+        assert!(wide.blocks.len() >= boxes.len().div_ceil(WIDTH));
+    }
+
+    #[test]
+    fn every_box_has_one_slot() {
+        for count in [0, 1, 2, WIDTH, WIDTH + 1, 1000, PIECE + 5000] {
+            holds_all(&boxes(count));
+        }
+    }
+
+    #[test]
+    fn coincident_boxes_are_noticed_and_held() {
+        let same = vec![Aabb { min: [1.0; 3], max: [2.0; 3] }; 2 * MOST_COINCIDENT];
+        assert!(!is_spread(same.iter()));
+        assert!(is_spread(boxes(20_000).iter()));
+        holds_all(&same);
+    }
+
+    #[test]
+    fn halving_is_balanced() {
+        let boxes = boxes(1000);
+        let binary = halve(&boxes, (0..1000).collect(), 1);
+        let mut deepest = 0;
+        let mut open = vec![(0, 1)];
+        while let Some((node, depth)) = open.pop() {
+            deepest = deepest.max(depth);
+            let node = &binary.nodes[node];
+            if !node.is_leaf() {
+                open.extend([0, 1].map(|i| (node.first_index as usize + i, depth + 1)));
+            }
+        }
+        assert_eq!(deepest, 11);
+    }
+}

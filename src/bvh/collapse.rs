@@ -132,3 +132,62 @@ fn children(nodes: &[Bvh2Node], costs: &[Costs], from: u32, is_leaf: bool) -> ([
     }
     (found, len)
 }
+
+#[cfg(test)]
+mod tests {
+    use obvhs::aabb::Aabb as Box2;
+
+    use super::*;
+
+    /// A balanced binary tree over `count` unit boxes in a row, a power of two, one a leaf.
+    fn row(count: u32) -> Binary {
+        let along = |from: u32, to: u32| Box2::new([from as f32, 0.0, 0.0].into(), [to as f32, 1.0, 1.0].into());
+        let mut nodes = vec![Bvh2Node::default()];
+        let mut open = vec![(0, 0, count)];
+        while let Some((at, from, to)) = open.pop() {
+            if to - from == 1 {
+                nodes[at] = Bvh2Node::new(along(from, to), 1, from);
+                continue;
+            }
+            let first = nodes.len();
+            nodes[at] = Bvh2Node::new(along(from, to), 0, first as u32);
+            nodes.extend([Bvh2Node::default(); 2]);
+            let middle = from.midpoint(to);
+            open.extend([(first, from, middle), (first + 1, middle, to)]);
+        }
+        Binary { nodes, order: (0..count).collect() }
+    }
+
+    /// With equal weights for equal counts, 64 boxes in a row become one node of eight full blocks.
+    #[test]
+    fn blocks_are_filled() {
+        let binary = row(64);
+        let mut counts = Vec::new();
+        let wide = collapse(
+            &binary,
+            WIDTH as u32,
+            |_, count| count as f32,
+            0.0,
+            |_, binary, leaf| {
+                let width = leaf.aabb().max.x - leaf.aabb().min.x;
+                counts.push(width as usize);
+                assert_eq!(binary.order.len(), 64);
+                Child::Block(counts.len() as u32 - 1)
+            },
+        );
+        assert_eq!(counts, [8; 8]);
+        assert_eq!(wide.waiting, 8);
+    }
+
+    #[test]
+    fn costs_fall_with_more_children() {
+        let binary = row(32);
+        let (counts, costs) = costs(&binary.nodes, 8, |_, count| count as f32);
+        assert_eq!(counts[0], 32);
+        assert_eq!(counts.iter().filter(|&&count| count == 1).count(), 32);
+        for own in costs {
+            assert!(own.windows(2).all(|pair| pair[1] <= pair[0]), "{own:?}");
+            assert!(own[WIDTH - 1].is_finite());
+        }
+    }
+}

@@ -184,3 +184,46 @@ impl Primitive<8> for RoundCone {
         t + base
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CONE: RoundCone = RoundCone { a: DVec3::ZERO, ra: 2.0, b: DVec3::new(0.0, 0.0, 10.0), rb: 1.0 };
+
+    /// The normals at the entrances of spheres and frustum are those of what is met there.
+    #[test]
+    fn each_part_is_entered() {
+        let below = CONE.enter(&Ray::new(DVec3::new(0.0, 0.0, -9.0), DVec3::Z)).unwrap();
+        assert_eq!((below.t, below.normal, below.share), (7.0, -DVec3::Z, 0.0));
+        let above = CONE.enter(&Ray::new(DVec3::new(0.0, 0.0, 20.0), -DVec3::Z)).unwrap();
+        assert_eq!((above.t, above.normal, above.share), (9.0, DVec3::Z, 1.0));
+        let side = CONE.enter(&Ray::new(DVec3::new(9.0, 0.0, 5.0), -DVec3::X)).unwrap();
+        // The slope of the tangent frustum: radii fall by 1 in 10.
+        assert!((side.normal.z - 0.1).abs() < 1e-12 && side.normal.x > 0.0, "{}", side.normal);
+        assert!(side.share > 0.4 && side.share < 0.6);
+        assert_eq!(CONE.enter(&Ray::new(DVec3::new(9.0, 0.0, 5.0), DVec3::X)), None);
+    }
+
+    /// A ray from inside enters nothing, but sees the inside.
+    #[test]
+    fn inside_is_seen_from_within() {
+        let middle = DVec3::new(0.0, 0.0, 5.0);
+        let ray = Ray::new(middle, DVec3::X);
+        assert!(CONE.holds(middle) && CONE.enter(&ray).is_none());
+        let wall = CONE.inner(&ray).unwrap();
+        assert!(CONE.holds(ray.at(wall.t - 1e-9)) && !CONE.holds(ray.at(wall.t + 1e-9)));
+        assert!(!CONE.holds(DVec3::new(0.0, 0.0, 11.5)) && CONE.holds(DVec3::new(0.0, 0.0, -1.5)));
+    }
+
+    #[test]
+    fn only_solids_are_packed() {
+        let packed = CONE.pack().unwrap();
+        assert_eq!(RoundCone::bounds(&packed), [[-2.0, -2.0, -2.0], [2.0, 2.0, 11.0]]);
+        assert!(RoundCone { ra: 0.0, ..CONE }.pack().is_none());
+        assert!(RoundCone { b: DVec3::NAN, ..CONE }.pack().is_none());
+        // One end within the other is that sphere alone.
+        let ball = RoundCone { a: DVec3::ZERO, ra: 3.0, b: DVec3::X, rb: 1.0 };
+        assert!(ball.holds(-DVec3::X * 2.9) && !ball.holds(DVec3::X * 3.1));
+    }
+}

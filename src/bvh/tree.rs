@@ -236,3 +236,70 @@ impl Tree {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::{Level, dispatch};
+
+    use super::*;
+
+    fn cube(x: f32) -> Aabb {
+        Aabb { min: [x, -1.0, -1.0], max: [x + 1.0, 1.0, 1.0] }
+    }
+
+    /// Notes the blocks in the order in which they come.
+    struct Seen(Vec<usize>);
+
+    impl Leaf for Seen {
+        fn test<S: Simd>(&mut self, _: &Beam<S>, block: usize, far: f32) -> f32 {
+            self.0.push(block);
+            far
+        }
+
+        fn fetch(&self, _: usize) {}
+    }
+
+    fn walked(tree: &Tree, ray: &Ray) -> Vec<usize> {
+        let mut seen = Seen(Vec::new());
+        dispatch!(Level::new(), simd => {
+            let beam = Beam::new(simd, ray, DVec3::ZERO);
+            tree.walk::<_, _, true>(&beam, f32::INFINITY, &mut seen);
+        });
+        seen.0
+    }
+
+    #[test]
+    fn an_empty_tree_is_walked() {
+        assert!(walked(&Tree::default(), &Ray::new(DVec3::ZERO, DVec3::X)).is_empty());
+    }
+
+    /// Nearest first from either side, through a grafted tree too; what the ray passes by is not shown.
+    #[test]
+    fn blocks_come_nearest_first() {
+        let mut inner = Tree::default();
+        let root = inner.add();
+        for (slot, x) in [(0, 6.0), (1, 4.0)] {
+            inner.set(root, slot, &cube(x), Child::Block(slot as u32));
+        }
+        let mut tree = Tree::default();
+        let root = tree.add();
+        tree.set(root, 3, &cube(2.0), Child::Block(0));
+        tree.set(root, 5, &cube(0.0), Child::Block(1));
+        let aside = Aabb { min: [0.0, 5.0, 0.0], max: [9.0, 6.0, 1.0] };
+        tree.set(root, 1, &aside, Child::Block(2));
+        let grafted = tree.graft(inner, 3);
+        tree.set(root, 0, &cube(4.0).union(&cube(6.0)), Child::Node(grafted));
+        assert_eq!(walked(&tree, &Ray::new(DVec3::new(-9.0, 0.0, 0.0), DVec3::X)), [1, 0, 4, 3]);
+        assert_eq!(walked(&tree, &Ray::new(DVec3::new(19.0, 0.0, 0.0), -DVec3::X)), [3, 4, 0, 1]);
+        assert!(walked(&tree, &Ray::new(DVec3::new(19.0, 0.0, 0.0), DVec3::X)).is_empty());
+    }
+
+    #[test]
+    fn the_empty_box_is_neutral() {
+        let b = cube(3.0);
+        assert_eq!(Aabb::EMPTY.union(&b), b);
+        assert_eq!(Aabb::EMPTY.middle(), DVec3::ZERO);
+        assert_eq!((b.middle(), b.size()), (DVec3::new(3.5, 0.0, 0.0), 2.0));
+        assert_eq!(b.pad(1.0).size(), 4.0);
+    }
+}

@@ -86,3 +86,27 @@ impl Primitive<9> for Triangle {
         met.select(t, f32x8::splat(simd, f32::INFINITY))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CORNER: Triangle = Triangle([DVec3::ZERO, DVec3::X, DVec3::Y]);
+
+    /// The weights of the corners give the point that is met.
+    #[test]
+    fn a_ray_meets_it_by_weights() {
+        let ray = Ray::new(DVec3::new(0.25, 0.5, 3.0), -DVec3::Z);
+        assert_eq!(CORNER.meet(&ray), Some((3.0, [0.25, 0.5])));
+        assert_eq!(CORNER.meet(&Ray::new(DVec3::Z, DVec3::X)), None);
+        assert_eq!(CORNER.normal(), DVec3::Z);
+    }
+
+    #[test]
+    fn what_has_no_area_is_not_packed() {
+        assert!(CORNER.pack().is_some());
+        assert!(Triangle([DVec3::ZERO, DVec3::X, DVec3::X * 2.0]).pack().is_none());
+        assert!(Triangle([DVec3::ZERO, DVec3::X, DVec3::Y * f64::INFINITY]).pack().is_none());
+        assert_eq!(Triangle::bounds(&CORNER.pack().unwrap()), [[0.0; 3], [1.0, 1.0, 0.0]]);
+    }
+}

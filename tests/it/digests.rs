@@ -1,0 +1,44 @@
+//! What exported files are, as numbers; tests/digests.txt keeps them.
+
+use lichtenberg::export::{Origin, Pov, Rib, RibOptions, SvgOptions, Templates, write_obj, write_ply, write_svg};
+use lichtenberg::model::Model;
+use lichtenberg::scene::Resolved;
+
+/// FNV-1a.
+fn fnv(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
+}
+
+/// A line for the include file and the schematic, one for the RIB archive, and, of scenes that are all mesh, one for OBJ
+/// and one for PLY.
+pub fn digests(name: &str, scene: &Resolved, model: &Model) -> String {
+    let templates = Templates::default();
+    let origin = Origin { command: "test".to_owned(), seed: scene.seed };
+    let mut bytes = Vec::new();
+    Pov::new(model, &templates, "digest", [320, 240], &origin).write_inc(&mut bytes).unwrap();
+    write_svg(model, SvgOptions { size: [320, 240] }, &mut bytes).unwrap();
+    let mut lines = format!("{:016x} {name}\n", fnv(&bytes));
+    bytes.clear();
+    let rib = Rib::new(model, &templates, "digest", [320, 240], &origin, RibOptions::default());
+    rib.write_archive(&mut bytes).unwrap();
+    lines += &format!("{:016x} {name} rib\n", fnv(&bytes));
+    for ending in ["obj", "ply"] {
+        bytes.clear();
+        match if ending == "obj" { write_obj(model, &mut bytes) } else { write_ply(model, &mut bytes) } {
+            Ok(()) => lines += &format!("{:016x} {name} {ending}\n", fnv(&bytes)),
+            Err(error) => assert_eq!(error.kind(), std::io::ErrorKind::InvalidInput, "{name}: {error}"),
+        }
+    }
+    lines
+}
+
+/// Holds the lines of all scenes to those that are kept. UPDATE=1 accepts new ones, which is a new edition for artists.
+pub fn compare(lines: &str) {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/digests.txt");
+    if std::env::var_os("UPDATE").is_some() {
+        std::fs::write(path, lines).unwrap();
+    }
+    let kept = std::fs::read_to_string(path).unwrap_or_default();
+    let changed: Vec<&str> = lines.lines().filter(|line| !kept.lines().any(|k| k == *line)).collect();
+    assert!(lines == kept, "exported files have changed: {changed:#?}");
+}

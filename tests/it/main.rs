@@ -1,0 +1,22 @@
+//! The tests from outside, one program: linking is most of what a test costs to build.
+
+mod architecture;
+mod command;
+mod compare;
+mod dendrites;
+mod digests;
+mod exr;
+mod geometry;
+mod growth;
+mod house;
+mod irregular;
+mod mutated;
+mod povray;
+mod preview;
+mod readme;
+mod rib;
+mod scenes;
+mod scipy;
+mod strike;
+mod support;
+mod voxels;

@@ -1,0 +1,279 @@
+//! RIB by an independent reading: what a renderer would rebuild from the files is what the model says.
+
+use crate::support::rib::{Primitive, World, point, read};
+use crate::support::{embedded, run_in, succeed_in, text};
+use lichtenberg::export::{Origin, Rib, RibOptions, RibShadows, Templates};
+use lichtenberg::math::{DVec3, Progress};
+use lichtenberg::model::{Camera, Model, Object, Projection};
+use lichtenberg::scene::{grow, model};
+
+fn modelled(name: &str) -> Model {
+    let scene = embedded(name, &[]);
+    let grown = grow(&scene, &[], 8 << 30, &Progress::default()).unwrap();
+    model(&scene, &grown, [160, 120]).unwrap()
+}
+
+fn exported(model: &Model, options: RibOptions) -> (String, String) {
+    let templates = Templates::default();
+    let rib = Rib::new(model, &templates, "scene", [160, 120], &Origin::default(), options);
+    let mut archive = Vec::new();
+    rib.write_archive(&mut archive).unwrap();
+    (rib.scene().unwrap(), String::from_utf8(archive).unwrap())
+}
+
+fn near(found: [f64; 3], expected: DVec3, size: f64) -> bool {
+    (DVec3::from_array(found) - expected).abs().max_element() <= 1e-4 * size
+}
+
+/// The frustum tangent to two spheres, from the formula of the design.
+fn tangent(a: DVec3, ra: f64, b: DVec3, rb: f64) -> Option<(DVec3, f64, DVec3, f64)> {
+    let long = (b - a).length();
+    let sin = (ra - rb) / long;
+    if long == 0.0 || sin.abs() >= 1.0 {
+        return None;
+    }
+    let (u, cos) = ((b - a) / long, (1.0 - sin * sin).sqrt());
+    Some((a + u * ra * sin, ra * cos, b + u * rb * sin, rb * cos))
+}
+
+/// Everything of `object`, place by place, is what was read.
+fn check_object(object: &Object, found: &[Primitive], scene: &str) {
+    let name = format!("{scene}: {}", object.name);
+    let bounds = object.bounds();
+    let size = bounds.size().max_element().max(bounds.max.abs().max_element());
+    let smallest = 1.0 / object.digits.scale();
+    let mut found = found.iter().peekable();
+    for place in &object.instances {
+        for ball in &object.balls {
+            // No renderer takes a radius that is 0 as written.
+            if ball.radius < smallest * 0.5 {
+                continue;
+            }
+            let (centre, radius) = (place.to_world(ball.centre), ball.radius * place.scale);
+            let Some(Primitive::Sphere { centre: c, radius: r }) = found.next() else { panic!("{name}: no sphere") };
+            assert!(near(*c, centre, size) && (r - radius).abs() <= 1e-4 * size, "{name}: {c:?} {r} {centre} {radius}");
+        }
+        for &[a, b] in &object.segments {
+            let (a, b) = (&object.balls[a as usize], &object.balls[b as usize]);
+            let Some((fa, ra, fb, rb)) = tangent(a.centre, a.radius, b.centre, b.radius) else { continue };
+            // What is shorter or thinner than a digit may be left out.
+            let is_tiny = (fb - fa).length() < smallest || ra.max(rb) < smallest;
+            if is_tiny && !matches!(found.peek(), Some(Primitive::Frustum { .. })) {
+                continue;
+            }
+            let Some(Primitive::Frustum { a: pa, ra: qa, b: pb, rb: qb }) = found.peek() else {
+                panic!("{name}: no frustum")
+            };
+            let (fa, fb) = (place.to_world(fa), place.to_world(fb));
+            let matches = |pa: &[f64; 3], qa: f64, pb: &[f64; 3], qb: f64| {
+                near(*pa, fa, size)
+                    && near(*pb, fb, size)
+                    && (qa - ra * place.scale).abs() <= 1e-4 * size
+                    && (qb - rb * place.scale).abs() <= 1e-4 * size
+            };
+            // A cone begins at its wide end.
+            let is_it = matches(pa, *qa, pb, *qb) || (*qb == 0.0 && matches(pb, *qb, pa, *qa));
+            if is_tiny && !is_it {
+                continue;
+            }
+            assert!(is_it, "{name}: {pa:?} {qa} {pb:?} {qb}, not {fa} {ra} {fb} {rb}");
+            found.next();
+        }
+        let as_it_is = [None];
+        let posed: Vec<_> = object.poses.iter().map(Some).collect();
+        for pose in if posed.is_empty() { &as_it_is[..] } else { &posed[..] } {
+            let put = |p: DVec3| place.to_world(pose.map_or(p, |pose| pose.at + pose.axes * p));
+            let mut triangles = object.mesh.triangles.iter();
+            while triangles.len() > 0 {
+                let Some(Primitive::Polygons { points, normals, faces }) = found.next() else {
+                    panic!("{name}: no mesh")
+                };
+                for face in faces {
+                    let [a, b, c] =
+                        triangles.next().unwrap_or_else(|| panic!("{name}: too many triangles")).map(|i| i as usize);
+                    let wanted = [a, c, b];
+                    assert_eq!(face.len(), 3);
+                    for (&i, &corner) in face.iter().zip(&wanted) {
+                        assert!(near(points[i], put(object.mesh.points[corner]), size), "{name}: corner {corner}");
+                        if !normals.is_empty() && pose.is_none() && place.turn == 0.0 && place.scale == 1.0 {
+                            assert!(near(normals[i], object.mesh.normals[corner], 1.0), "{name}: normal {corner}");
+                        }
+                    }
+                    // Clockwise from outside, where normals tell it.
+                }
+            }
+        }
+    }
+    assert!(found.next().is_none(), "{name}: more than the model has");
+}
+
+/// Where the camera of the file puts a point, as fractions of the picture from the top left.
+fn projected(world: &World, p: DVec3) -> [f64; 2] {
+    let [x, y, z] = point(&world.camera, p.to_array());
+    let [width, height] = world.format;
+    if world.projection == "orthographic" {
+        let w = &world.window;
+        return [(x - w[0]) / (w[1] - w[0]), 1.0 - (y - w[2]) / (w[3] - w[2])];
+    }
+    // The angle is that across the shorter side.
+    let tan = libm::tan(world.fov.to_radians() * 0.5);
+    let shorter = width.min(height);
+    [0.5 + x / (z * tan) * 0.5 * shorter / width, 0.5 - y / (z * tan) * 0.5 * shorter / height]
+}
+
+fn check_camera(model: &Model, world: &World, scene: &str) {
+    let camera: &Camera = &model.camera;
+    let mut seen = 0;
+    for p in model.bounds().corners() {
+        let Some(expected) = camera.project(p).filter(|at| at.depth > 0.0) else { continue };
+        let [x, y] = projected(world, p);
+        assert!((x - expected.x).abs() < 1e-4 && (y - expected.y).abs() < 1e-4, "{scene}: {x} {y}, not {expected:?}");
+        let depth = point(&world.camera, p.to_array())[2];
+        if matches!(camera.projection, Projection::Perspective { .. }) {
+            assert!((depth - expected.depth).abs() < 1e-4 * expected.depth.max(1.0), "{scene}");
+        }
+        assert!(depth < world.clipping[1], "{scene}: {p} is beyond the far plane");
+        seen += 1;
+    }
+    assert!(seen > 0, "{scene}: the camera sees nothing");
+    // Nothing of sky or ground reaches behind the camera.
+    for (name, .., primitives) in world.objects.iter().filter(|(name, ..)| name == "sky" || name == "ground") {
+        for primitive in primitives {
+            let Primitive::Polygons { points, .. } = primitive else { panic!("{name} is no sheet") };
+            let is_front = |p: &[f64; 3]| {
+                let z = point(&world.camera, *p)[2];
+                z > world.clipping[0] && z < world.clipping[1]
+            };
+            assert!(points.iter().all(is_front), "{scene}: {name}");
+        }
+    }
+}
+
+/// What a renderer would rebuild from the model's files is what the model says.
+pub fn reads_back(model: &Model, name: &str) {
+    let (scene, archive) = exported(model, RibOptions::default());
+    let world = read(&scene, &archive);
+    check_camera(model, &world, name);
+    let objects: Vec<_> = world.objects.iter().filter(|(found, ..)| found != "sky" && found != "ground").collect();
+    assert_eq!(objects.len(), model.objects.len(), "{name}");
+    for (object, (.., surface, colour, primitives)) in model.objects.iter().zip(objects) {
+        check_object(object, primitives, name);
+        let (_, material) = &model.materials[object.material];
+        let expected = if material.diffuse == 0.0 && material.ambient == 0.0 {
+            "constant"
+        } else if material.specular.max(material.phong) > 0.0 {
+            "plastic"
+        } else {
+            "matte"
+        };
+        assert_eq!(surface, expected, "{name}");
+        if expected != "constant" {
+            assert!(near(*colour, DVec3::from_array(material.mean_colour().0), 1.0), "{name}");
+        }
+    }
+    // An ambient light of the renderer's own, then the scene's.
+    assert_eq!(world.lights.len(), 1 + model.lights.len());
+    for (light, found) in model.lights.iter().zip(&world.lights[1..]) {
+        let value = |key: &str| DVec3::from_slice(&found.parameters[key]);
+        assert!((value("color lightcolor") - DVec3::from_array(light.colour().0)).length() < 1e-5);
+        if let lichtenberg::model::Light::Sun { towards, .. } = light {
+            assert_eq!(found.shader, "distantlight");
+            assert!((value("point from") - value("point to") - *towards).length() < 1e-5);
+        }
+    }
+}
+
+#[test]
+fn shadows_and_displacement_are_told_apart() {
+    let model = modelled("papers/2007-fig12");
+    let (scene, archive) = exported(&model, RibOptions { shadows: RibShadows::Maps, displace: true });
+    assert!(scene.contains("MakeShadow \"scene-light") && scene.contains("\"shadowdistant\""));
+    assert!(archive.contains("Displacement \"thorns\"") && archive.contains("\"displacementbound\" \"float sphere\""));
+    let world = read(&scene, &archive);
+    let thorns = model.objects.iter().filter(|object| object.is_thorns).count();
+    assert!(thorns > 0);
+    assert_eq!(world.objects.iter().filter(|o| o.0 != "sky" && o.0 != "ground").count(), model.objects.len() - thorns);
+    let (scene, _) = exported(&model, RibOptions { shadows: RibShadows::Rays, displace: false });
+    assert!(scene.contains("\"raydistant\"") && scene.contains("\"int transmission\" [1]"));
+}
+
+/// What casts no shadow is not in what shadow maps show.
+#[test]
+fn shadow_maps_show_casters_alone() {
+    let mut model = modelled("papers/2007-fig12");
+    let maps = RibOptions { shadows: RibShadows::Maps, displace: false };
+    assert!(exported(&model, maps).0.matches("\"scene.archive.rib\"").count() >= 2);
+    model.objects[0].shadow = false;
+    let templates = Templates::default();
+    let rib = Rib::new(&model, &templates, "scene", [160, 120], &Origin::default(), maps);
+    let scene = rib.scene().unwrap();
+    assert!(rib.has_casters() && scene.contains("\"scene.casters.rib\""));
+    assert_eq!(scene.matches("\"scene.archive.rib\"").count(), 1);
+    let mut casters = Vec::new();
+    rib.write_casters(&mut casters).unwrap();
+    let world = read(&scene, &text(&casters));
+    assert!(world.objects.iter().all(|(name, ..)| *name != model.objects[0].name));
+    assert!(world.objects.iter().any(|(name, ..)| *name == model.objects[1].name));
+}
+
+/// The files of the command: whole, packed or not, and left alone where they were edited.
+#[test]
+fn the_command_writes_scene_and_archive() {
+    let folder = tempfile::tempdir().unwrap();
+    let few = ["--set", "grow.elm.to.twigs.count=20"];
+    let export = |extra: &[&str]| {
+        let args = [&["export", "elm", "--to", "rib"], &few[..], extra].concat();
+        succeed_in(folder.path(), &args)
+    };
+    assert_eq!(export(&[]), "./elm.archive.rib\n./elm.rib\n");
+    let plain = std::fs::read(folder.path().join("elm.archive.rib")).unwrap();
+    let scene = std::fs::read_to_string(folder.path().join("elm.rib")).unwrap();
+    read(&scene, &text(&plain));
+    export(&["--gzip"]);
+    let packed = std::fs::read(folder.path().join("elm.archive.rib")).unwrap();
+    assert!(packed.starts_with(&[0x1f, 0x8b]) && packed.len() * 2 < plain.len());
+    let mut unpacked = Vec::new();
+    std::io::Read::read_to_end(&mut flate2::read::GzDecoder::new(&packed[..]), &mut unpacked).unwrap();
+    assert_eq!(unpacked, plain);
+    std::fs::write(folder.path().join("elm.rib"), scene.replace("ShadingRate 0.5", "ShadingRate 1")).unwrap();
+    assert_eq!(export(&[]), "./elm.archive.rib\n");
+    let output = run_in(folder.path(), &["export", "elm", "--to", "pov", "--gzip"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("--gzip is for RIB"));
+}
+
+/// Renderers are driven as they are: by a stand-in for what is not packaged, whose exit code lies as theirs do.
+#[test]
+fn a_renderer_that_speaks_has_failed() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let bin = folder.path().join("bin");
+    std::fs::create_dir(&bin).unwrap();
+    let run = |script: &str| {
+        let path = bin.join("rndr");
+        std::fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
+        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+        let path = format!("{}:/usr/bin:/bin", bin.display());
+        let mut command = crate::support::lichtenberg();
+        command.current_dir(folder.path()).env("PATH", path);
+        command
+            .args(["render", "papers/2007-fig03", "--with", "pixie", "--size", "32x24", "-o", "out.png"])
+            .output()
+            .unwrap()
+    };
+    let output = run("echo 'scene.rib:3: unknown shader'; exit 0");
+    assert_eq!(output.status.code(), Some(3));
+    assert!(text(&output.stderr).contains("unknown shader"), "{}", text(&output.stderr));
+    let output = run("exit 0");
+    assert_eq!(output.status.code(), Some(3));
+    assert!(text(&output.stderr).contains("no picture"));
+    assert!(!folder.path().join("out.png").exists());
+    // Without it, a hint.
+    let output = crate::support::lichtenberg()
+        .current_dir(folder.path())
+        .env("PATH", "/nowhere")
+        .args(["render", "papers/2007-fig03", "--with", "aqsis", "-o", "out.png"])
+        .output()
+        .unwrap();
+    assert!(output.status.code() == Some(3) && text(&output.stderr).contains("export --to rib"));
+}

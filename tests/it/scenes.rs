@@ -1,0 +1,126 @@
+//! Every embedded scene: what it claims, and the same bytes everywhere.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::LazyLock;
+
+use lichtenberg::grow::Grown;
+use lichtenberg::math::Progress;
+use lichtenberg::scene::{Resolved, check_claims, grow, model};
+use rayon::prelude::*;
+
+use crate::support::{embedded, panic_text, scene_names};
+
+/// What the checks found in a scene; `Err` has what one of them said.
+struct Checked {
+    digests: Result<String, String>,
+    claims: Result<(), String>,
+    rib: Result<(), String>,
+    plants: Result<usize, String>,
+}
+
+/// Each scene is grown once for all checks that want every scene, on two threads; tests/bytes.rs has one.
+static CHECKED: LazyLock<Vec<Checked>> = LazyLock::new(|| {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+    pool.install(|| scene_names().par_iter().map(|name| check(name)).collect())
+});
+
+fn check(name: &str) -> Checked {
+    let scene = embedded(name, &[]);
+    let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
+    let model = model(&scene, &grown, [320, 240]).unwrap();
+    Checked {
+        digests: told(|| crate::digests::digests(name, &scene, &model)),
+        claims: told(|| claims_hold(name, &scene, &grown)),
+        rib: told(|| crate::rib::reads_back(&model, name)),
+        plants: told(|| crate::irregular::widths_fall(name, &scene, &grown)),
+    }
+}
+
+/// What a check returns, or the words that it panics with.
+fn told<T>(check: impl FnOnce() -> T) -> Result<T, String> {
+    catch_unwind(AssertUnwindSafe(check)).map_err(|cause| panic_text(&*cause))
+}
+
+/// What a check found in every scene; those where it failed are told together.
+fn of_every_scene<T>(found: impl Fn(&'static Checked) -> &'static Result<T, String>) -> Vec<&'static T> {
+    let (good, bad): (Vec<_>, Vec<_>) = CHECKED.iter().map(|checked| found(checked).as_ref()).partition(Result::is_ok);
+    let bad: Vec<&String> = bad.into_iter().filter_map(Result::err).collect();
+    assert!(bad.is_empty(), "{bad:#?}");
+    good.into_iter().filter_map(Result::ok).collect()
+}
+
+fn claims_hold(name: &str, scene: &Resolved, grown: &[Grown]) {
+    let findings = check_claims(scene, grown);
+    assert_eq!(findings.len(), scene.claims.len(), "{name}: every claim is measured");
+    assert!(!findings.is_empty(), "{name} claims nothing");
+    for finding in findings {
+        assert!(
+            finding.holds,
+            "{name}: {} ({}): {}, not {}",
+            finding.claim, finding.says, finding.measured, finding.against
+        );
+    }
+}
+
+#[test]
+fn scenes_hold_what_they_claim() {
+    of_every_scene(|checked| &checked.claims);
+}
+
+/// What a renderer would rebuild from the RIB is what the model says.
+#[test]
+fn every_scene_reads_back() {
+    of_every_scene(|checked| &checked.rib);
+}
+
+/// Along every limb of every plant width never grows towards the tip, nor do limbs float.
+#[test]
+fn width_never_grows_towards_the_tip() {
+    let plants: usize = of_every_scene(|checked| &checked.plants).into_iter().sum();
+    assert!(plants > 60);
+}
+
+/// A claim must be able to fail: with other weights, those of Fig. 1 and Fig. 2 do.
+#[test]
+fn claims_can_fail() {
+    for (name, change, claim) in [
+        ("papers/2008-fig02", ("space.straight.weights.alpha", "3"), "nearly-straight"),
+        ("papers/2008-fig01", ("space.centre.field.cost.scale", "0"), "hugs"),
+        ("ivy", ("grow.ivy.by.voxels.keep_from.by", "0"), "window"),
+        ("ivy", ("grow.ivy.by.voxels.cling.within", "[0.02, 0.2]"), "hugs"),
+        ("ivy", ("grow.ivy.by.voxels.rounds", "9"), "corner"),
+        ("papers/2008-fig06", ("grow.many.to.tips.stream", "others"), "same"),
+        ("cactus", ("space.air.forbid.box", "{ min = [8, 8, 8], max = [9, 9, 9] }"), "stem"),
+    ] {
+        let changes = if name == "cactus" {
+            vec![("space.air.forbid", "{ box = { min = [8, 8, 8], max = [9, 9, 9] } }")]
+        } else {
+            vec![change]
+        };
+        let scene = embedded(name, &changes);
+        let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
+        let finding = check_claims(&scene, &grown).into_iter().find(|f| f.claim == claim).unwrap();
+        assert!(!finding.holds, "{name}: {claim} holds with {change:?}");
+    }
+}
+
+/// The same bytes as tests/digests.txt has, and so as every other build and number of threads gives.
+#[test]
+fn files_are_the_same_everywhere() {
+    let lines: String = of_every_scene(|checked| &checked.digests).into_iter().map(String::as_str).collect();
+    crate::digests::compare(&lines);
+}
+
+/// Fig. 6: adding endpoints keeps those already placed, and the paths to them.
+#[test]
+fn more_endpoints_keep_the_first() {
+    let ends = |count: &str| {
+        let scene = embedded("elm", &[("grow.elm.to.twigs.count", count), ("grow.elm.smooth", "0")]);
+        let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
+        let skeleton = &grown[0].skeleton;
+        skeleton.paths.iter().map(|p| skeleton.nodes[p.end as usize].position).collect::<Vec<_>>()
+    };
+    let (few, many) = (ends("20"), ends("36"));
+    assert_eq!(few[..], many[..few.len()]);
+    assert_eq!(many.len(), few.len() + 16);
+}
