@@ -15,7 +15,7 @@ mod whole;
 
 pub use self::exr::{ExrHead, decode_exr, decode_panorama, encode_exr, encode_exr_rows};
 pub use cryptomatte::add_mattes;
-pub use folder::{Folder, embedded_scenes, leaf_names};
+pub use folder::{FileRead, Folder, Reads, embedded_scenes, leaf_names};
 pub use mesh::{decode_mesh, decode_obj, decode_ply};
 pub use picture::{
     PngHead, Rgba, decode_grey, decode_linear, decode_png, encode_png, encode_png_rows, encode_png16, png_texts, resize,
