@@ -22,6 +22,13 @@ use crate::model::{
 #[serde(deny_unknown_fields)]
 #[schemars(title = "Lichtenberg scene")]
 pub struct Scene {
+    /// Another file: the scene takes from it what it does not give itself. The path is relative to the file that names it;
+    /// an included file may include another, and need not be a whole scene. Spaces, steps, objects, materials, claims,
+    /// `camera`, `ground` and `view` are taken key by key, as by `like`; all else whole. Files that an included file names,
+    /// such as meshes, are relative to the scene.
+    #[serde(default)]
+    #[schemars(length(min = 1))]
+    pub include: Option<String>,
     /// What it is called.
     #[schemars(length(min = 1))]
     pub title: String,

@@ -8,6 +8,7 @@ mod claim;
 mod document;
 mod dress;
 mod growth;
+mod include;
 mod methods;
 mod mistake;
 mod repeat;
@@ -21,7 +22,7 @@ pub use animation::TrackSpec;
 pub use build::{Stage, grow, model};
 pub use claim::{Claim, Claimed, Finding, Quantity, check_claims};
 pub use document::{LightsSpec, ObjectSpec, Scene};
-pub use mistake::{Mistake, SceneError};
+pub use mistake::{Included, Mistake, SceneError, Span};
 pub use resolve::{ObjectPlan, Resolved, View};
 pub use schema::{schema, schema_markdown};
 pub use tree::Override;
@@ -79,7 +80,8 @@ pub fn load(source: &Source, overrides: &[Override]) -> Result<Resolved, SceneEr
 /// # Errors
 /// [`SceneError`] with every mistake found.
 pub fn load_frame(source: &Source, overrides: &[Override], frame: Option<f64>) -> Result<Resolved, SceneError> {
-    let (mut tree, mut mistakes) = tree::parse(&source.text);
+    let (mut tree, mut mistakes) = tree::parse(&source.text, None);
+    include::include(&mut tree, &source.folder, &mut mistakes);
     tree::apply(&mut tree, overrides, &mut mistakes);
     if let Some(frame) = frame {
         animation::animate(&mut tree, frame, &mut mistakes);
