@@ -23,9 +23,9 @@ use crate::model::{
 #[schemars(title = "Lichtenberg scene")]
 pub struct Scene {
     /// Another file: the scene takes from it what it does not give itself. The path is relative to the file that names it;
-    /// an included file may include another, and need not be a whole scene. Spaces, steps, objects, materials, claims,
-    /// `camera`, `ground` and `view` are taken key by key, as by `like`; all else whole. Files that an included file names,
-    /// such as meshes, are relative to the scene.
+    /// an included file may include another, and need not be a whole scene. Spaces, steps, objects, materials and claims of
+    /// the same name are taken key by key, as by `like`, and so are `camera`, `ground` and `view`; a shape, a light and all
+    /// else whole. Files that an included file names, such as meshes, are relative to the scene.
     #[serde(default)]
     #[schemars(length(min = 1))]
     pub include: Option<String>,
