@@ -61,12 +61,13 @@ impl Failure {
     }
 }
 
-/// Mistakes as JSON: scene, line, column, place, message.
+/// Mistakes as JSON: scene, file (the scene or what it includes), line, column, place, message.
 fn mistakes(error: &SceneError) -> Vec<serde_json::Value> {
     let mistakes = error.mistakes.iter().map(|mistake| {
-        let at = mistake.span.as_ref().map(|span| error.line_column(span.start));
+        let at = error.line_column(mistake);
         serde_json::json!({
             "scene": error.name,
+            "file": error.file(mistake).0,
             "line": at.map(|(line, _)| line),
             "column": at.map(|(_, column)| column),
             "place": mistake.place,
@@ -84,10 +85,11 @@ fn print_scene(error: &SceneError, console: &Console) {
         let place = if mistake.place.is_empty() { String::new() } else { format!("{}: ", mistake.place) };
         let mut diagnostic = MietteDiagnostic::new(format!("{place}{}", mistake.message));
         match &mistake.span {
-            Some(span) => diagnostic.labels = Some(vec![LabeledSpan::at(span.clone(), "here")]),
+            Some(span) => diagnostic.labels = Some(vec![LabeledSpan::at(span.range.clone(), "here")]),
             None => diagnostic.message = format!("{}: {}", error.name, diagnostic.message),
         }
-        let report = Report::new(diagnostic).with_source_code(NamedSource::new(&error.name, error.text.clone()));
+        let (name, source) = error.file(mistake);
+        let report = Report::new(diagnostic).with_source_code(NamedSource::new(name, source.to_owned()));
         let mut text = String::new();
         if handler.render_report(&mut text, report.as_ref()).is_err() {
             text = error.to_string();

@@ -8,7 +8,7 @@ use super::console::Console;
 use super::error::Failure;
 use super::memory;
 use crate::export::Origin;
-use crate::files::{Folder, embedded_scenes};
+use crate::files::{FileRead, Folder, Reads, embedded_scenes};
 use crate::geom::MarkKind;
 use crate::grow::Grown;
 use crate::math::{Progress, unknown};
@@ -43,6 +43,7 @@ pub struct Jobs {
     pub pattern: String,
     size: Option<[u32; 2]>,
     max_memory: u64,
+    reads: Reads,
 }
 
 /// The text of the scene called `name`: a file, or else an embedded one.
@@ -91,8 +92,10 @@ impl Jobs {
             return Err(Failure::Usage(format!("more than {MOST_JOBS} pictures in one call are a slip of the hand")));
         }
         let mut list = Vec::new();
+        let reads = Reads::default();
         for given in &args.scenes {
             let source = find_scene(given, console)?;
+            let source = Source { folder: source.folder.recorded(&reads), ..source };
             let stem = Path::new(given).file_stem().map_or("scene".into(), |s| s.to_string_lossy());
             for (&seed, &frame) in seeds.iter().flat_map(|seed| frames.iter().map(move |frame| (seed, frame))) {
                 for choice in choices(&args.sweep) {
@@ -142,7 +145,8 @@ impl Jobs {
         for sweep in args.sweep.iter().filter(|sweep| sweep.values.len() > 1) {
             pattern.push_str(&format!("_{{{}}}", sweep.path));
         }
-        Ok(Self { list, pattern, size: args.size, max_memory: args.max_memory.unwrap_or_else(memory::default_limit) })
+        let max_memory = args.max_memory.unwrap_or_else(memory::default_limit);
+        Ok(Self { list, pattern, size: args.size, max_memory, reads })
     }
 
     /// The output of each job by `pattern`.
@@ -166,6 +170,11 @@ impl Jobs {
         let size = self.size.map(|[w, h]| Override { path: "size".to_owned(), value: format!("[{w}, {h}]") });
         let overrides: Vec<Override> = job.overrides.iter().cloned().chain(size).collect();
         Ok(scene::load_frame(&job.source, &overrides, job.frame.map(f64::from))?)
+    }
+
+    /// The files that scenes have named so far, whether they could be read or not.
+    pub fn reads(&self) -> Vec<FileRead> {
+        self.reads.files()
     }
 
     /// Grows a scene.

@@ -1,14 +1,19 @@
 //! `new`: a scene of one's own to start from.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+
+use toml::de::{DeTable, DeValue};
 
 use super::args::NewArgs;
 use super::console::Console;
 use super::error::Failure;
 use super::render::check_name;
-use crate::files::{Folder, embedded_scenes, write_bytes};
+use crate::files::{FileRead, Folder, Reads, embedded_scenes, write_bytes};
 use crate::math::unknown;
+use crate::scene::{Source, load};
 
+/// Writes an embedded scene as NAME.toml and what it reads beside it, under the paths that it has in the program: below
+/// `assets` and `skies`, where no output goes by default.
 pub fn run(args: &NewArgs, console: &Console) -> Result<(), Failure> {
     check_name(&args.name)?;
     let scenes = embedded_scenes();
@@ -20,14 +25,23 @@ pub fn run(args: &NewArgs, console: &Console) -> Result<(), Failure> {
             .or_else(|| find("elm"))
             .ok_or_else(|| Failure::Usage("there is no scene to start from".to_owned()))?,
     };
-    let (_, text, folder) = found;
-    let mut files = vec![(PathBuf::from(format!("{}.toml", args.name)), text.as_bytes().to_vec())];
-    for name in named_files(text) {
-        files.push((PathBuf::from(&name), read_embedded(folder, &name)?));
+    let (name, text, folder) = found;
+    let reads = Reads::default();
+    let source = Source { name: name.clone(), text: (*text).to_owned(), folder: folder.clone().recorded(&reads) };
+    load(&source, &[])?;
+    let reads = reads.files();
+    let own = PathBuf::from(format!("{}.toml", args.name));
+    if own.exists() {
+        return Err(Failure::Usage(format!("{} is there already", own.display())));
     }
-    for (path, _) in &files {
-        if path.exists() {
-            return Err(Failure::Usage(format!("{} is there already", path.display())));
+    let mut files = vec![(own, with_new_paths(text, &reads).into_bytes())];
+    for FileRead { path, .. } in reads {
+        let bytes = Folder::Embedded(PathBuf::new()).read(&slashed(&path)).map_err(Failure::Usage)?;
+        match std::fs::read(&path) {
+            // Scenes share assets.
+            Ok(old) if old == bytes => {}
+            Ok(_) => return Err(Failure::Usage(format!("{} is there already, and another file", path.display()))),
+            Err(_) => files.push((path, bytes)),
         }
     }
     for (path, bytes) in files {
@@ -41,31 +55,47 @@ pub fn run(args: &NewArgs, console: &Console) -> Result<(), Failure> {
     Ok(())
 }
 
-fn read_embedded(folder: &Folder, name: &str) -> Result<Vec<u8>, Failure> {
-    folder.read(name).map_err(Failure::Usage)
-}
-
-/// The files that a scene's text names: values of `file` and `sketch`.
-fn named_files(text: &str) -> Vec<String> {
-    fn visit(value: &toml::Value, out: &mut Vec<String>) {
-        match value {
-            toml::Value::Table(table) => {
-                for (key, value) in table {
-                    match value {
-                        toml::Value::String(name) if key == "file" || key == "sketch" => out.push(name.clone()),
-                        value => visit(value, out),
-                    }
-                }
-            }
-            toml::Value::Array(items) => items.iter().for_each(|item| visit(item, out)),
-            _ => {}
+/// A scene's text with every file that it names at its path within the embedded scenes.
+fn with_new_paths(text: &str, reads: &[FileRead]) -> String {
+    let mut named = Vec::new();
+    let (table, _) = DeTable::parse_recoverable(text);
+    table.get_ref().iter().for_each(|(_, value)| strings(value.get_ref(), value.span(), &mut named));
+    named.sort_by_key(|(_, span)| span.start);
+    let mut new = text.to_owned();
+    for (name, span) in named.into_iter().rev() {
+        if let Some(read) = reads.iter().find(|read| read.name == name && read.path != Path::new(&name)) {
+            new.replace_range(span, &toml::Value::from(slashed(&read.path)).to_string());
         }
     }
-    let mut files = Vec::new();
-    if let Ok(table) = text.parse::<toml::Table>() {
-        visit(&toml::Value::Table(table), &mut files);
+    new
+}
+
+/// The texts in a value, and where they stand.
+fn strings(value: &DeValue<'_>, span: std::ops::Range<usize>, out: &mut Vec<(String, std::ops::Range<usize>)>) {
+    match value {
+        DeValue::String(text) => out.push((text.to_string(), span)),
+        DeValue::Table(table) => table.iter().for_each(|(_, value)| strings(value.get_ref(), value.span(), out)),
+        DeValue::Array(items) => items.iter().for_each(|item| strings(item.get_ref(), item.span(), out)),
+        _ => {}
     }
-    files.sort();
-    files.dedup();
-    files
+}
+
+/// A path with `/`, as scenes and the embedded files have it.
+fn slashed(path: &Path) -> String {
+    path.to_string_lossy().replace('\\', "/")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_replaced() {
+        let read = |name: &str, path: &str| FileRead { name: name.to_owned(), path: path.into() };
+        let reads = [read("../assets/a.png", "assets/a.png"), read("assets/b.obj", "assets/b.obj")];
+        let text =
+            "# ../assets/a.png\na = { file = \"../assets/a.png\" } # here\nb = [\"../assets/a.png\", 'assets/b.obj']\n";
+        let new = "# ../assets/a.png\na = { file = \"assets/a.png\" } # here\nb = [\"assets/a.png\", 'assets/b.obj']\n";
+        assert_eq!(with_new_paths(text, &reads), new);
+    }
 }

@@ -1,12 +1,13 @@
 //! `render --watch`: the picture follows the scene's files.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use notify::{RecursiveMode, Watcher};
+use notify::{RecommendedWatcher, RecursiveMode, Watcher};
 
 use super::args::{RenderArgs, Show};
 use super::console::Console;
@@ -24,10 +25,62 @@ const COARSE: u32 = 4;
 const POLL: Duration = Duration::from_millis(50);
 /// Files are written in several strokes: a change counts when it has been quiet for so long.
 const QUIET: Duration = Duration::from_millis(80);
-/// What scenes are made of.
-const ENDINGS: [&str; 11] = ["toml", "svg", "png", "jpg", "jpeg", "tif", "tiff", "webp", "obj", "exr", "hdr"];
 
-/// Renders whenever a file beside the scene changes, until interrupted.
+/// The files that a scene is read from, and their folders, which are watched.
+struct Sources {
+    watcher: RecommendedWatcher,
+    files: Arc<Mutex<BTreeSet<PathBuf>>>,
+    folders: BTreeSet<PathBuf>,
+    /// What is written is no source, even where it is read.
+    output: Option<PathBuf>,
+}
+
+impl Sources {
+    /// Of no files yet; their changes are sent.
+    fn new(output: &Path, changes: Sender<()>) -> Result<Self, Failure> {
+        let files = Arc::new(Mutex::new(BTreeSet::new()));
+        let known = Arc::clone(&files);
+        let watcher = notify::recommended_watcher(move |event: notify::Result<notify::Event>| {
+            let Ok(event) = event else { return };
+            let known = known.lock().unwrap_or_else(PoisonError::into_inner);
+            // Reading a file is no change of it.
+            if !event.kind.is_access() && event.paths.iter().any(|path| known.contains(path)) {
+                let _ = changes.send(());
+            }
+        })
+        .map_err(|error| Failure::Usage(format!("cannot watch for changes: {error}")))?;
+        Ok(Self { watcher, files, folders: BTreeSet::new(), output: place(output) })
+    }
+
+    /// Follows `file`, whether it is there or not, and what it links to.
+    fn follow(&mut self, file: &Path) -> Result<(), Failure> {
+        for path in place(file).into_iter().chain(file.canonicalize()) {
+            if self.output.as_ref() == Some(&path) {
+                continue;
+            }
+            if let Some(folder) = path.parent().filter(|folder| !self.folders.contains(*folder)) {
+                self.watcher
+                    .watch(folder, RecursiveMode::NonRecursive)
+                    .map_err(|error| Failure::Usage(format!("cannot watch {}: {error}", folder.display())))?;
+                self.folders.insert(folder.to_owned());
+            }
+            self.files.lock().unwrap_or_else(PoisonError::into_inner).insert(path);
+        }
+        Ok(())
+    }
+}
+
+/// The path of `file` from the root, or of the first folder on the way to it that is missing.
+fn place(file: &Path) -> Option<PathBuf> {
+    let name = file.file_name()?;
+    let folder = file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match folder.canonicalize() {
+        Ok(folder) => Some(folder.join(name)),
+        Err(_) => place(folder),
+    }
+}
+
+/// Renders whenever a file that the scene is read from changes, until interrupted.
 pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Result<(), Failure> {
     let [scene] = &args.scene.scenes[..] else {
         return Err(Failure::Usage("--watch follows one scene".to_owned()));
@@ -38,31 +91,16 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
     }
     let output = output(args)?;
     let (send, changes) = channel();
-    let (written, own) = (output.clone(), output.file_name().map(ToOwned::to_owned));
-    let mut watcher = notify::recommended_watcher(move |event: notify::Result<notify::Event>| {
-        let Ok(event) = event else { return };
-        let is_ours = |path: &PathBuf| path.file_name().map(ToOwned::to_owned) == own || *path == written;
-        let is_source = |path: &PathBuf| {
-            path.extension().is_some_and(|e| ENDINGS.iter().any(|ending| e.eq_ignore_ascii_case(ending)))
-                && !is_ours(path)
-        };
-        // Reading a file is no change of it.
-        if !event.kind.is_access() && event.paths.iter().any(is_source) {
-            let _ = send.send(());
-        }
-    })
-    .map_err(|error| Failure::Usage(format!("cannot watch for changes: {error}")))?;
-    let folder = file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    watcher
-        .watch(folder, RecursiveMode::Recursive)
-        .map_err(|error| Failure::Usage(format!("cannot watch {}: {error}", folder.display())))?;
+    let mut sources = Sources::new(&output, send)?;
+    sources.follow(&file)?;
+    let sources = Mutex::new(sources);
 
     loop {
         // Work on an outdated scene stops at the next change, all work at a signal.
         let outdated = Arc::new(AtomicBool::new(false));
         let progress = console.progress_until(scene, Arc::clone(&outdated));
         let result = std::thread::scope(|threads_here| {
-            let work = threads_here.spawn(|| once(args, &output, threads, console, &progress));
+            let work = threads_here.spawn(|| once(args, &output, &sources, threads, console, &progress));
             loop {
                 let has_changed = changes.recv_timeout(POLL).is_ok();
                 if has_changed || console.is_stopped() {
@@ -116,6 +154,7 @@ fn output(args: &RenderArgs) -> Result<PathBuf, Failure> {
 fn once(
     args: &RenderArgs,
     output: &Path,
+    sources: &Mutex<Sources>,
     threads: Option<usize>,
     console: &Console,
     progress: &Progress,
@@ -123,7 +162,11 @@ fn once(
     let begun = Instant::now();
     let jobs = Jobs::new(&args.scene, console)?;
     let [job] = &jobs.list[..] else { return Err(Failure::Usage("--watch follows one scene".to_owned())) };
-    let scene = jobs.load(job)?;
+    let loaded = jobs.load(job);
+    for read in jobs.reads() {
+        sources.lock().unwrap_or_else(PoisonError::into_inner).follow(&read.path)?;
+    }
+    let scene = loaded?;
     let finish = |drawn: Drawn| -> Result<(), Failure> {
         drawn.write(output, args, &scene)?;
         if args.show.contains(&Show::Terminal) {

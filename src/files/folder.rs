@@ -3,24 +3,84 @@
 use std::fs::File;
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use include_dir::{Dir, include_dir};
 
 static SCENES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/scenes");
 
+/// Files that scenes name are here: nothing in it is a scene.
+const ASSETS: &str = "assets";
 /// No file of a scene is larger than this.
 const MOST_BYTES: u64 = 256 << 20;
 
 /// A folder that a scene's files are named relative to.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub enum Folder {
     /// On disk.
     Disk(PathBuf),
     /// Within the embedded scenes, by path.
     Embedded(PathBuf),
+    /// One of these, whose reads are recorded.
+    Recorded(Box<Self>, Reads),
+}
+
+/// The files that were asked for, each once, in order; also those that could not be read.
+#[derive(Clone, Debug, Default)]
+pub struct Reads(Arc<Mutex<Vec<FileRead>>>);
+
+/// A file that was asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FileRead {
+    /// Its name as it was written.
+    pub name: String,
+    /// Where it is, as [`Folder::path`] says.
+    pub path: PathBuf,
+}
+
+impl Reads {
+    /// The files asked for so far.
+    #[must_use]
+    pub fn files(&self) -> Vec<FileRead> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    fn add(&self, read: FileRead) {
+        let mut files = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if !files.contains(&read) {
+            files.push(read);
+        }
+    }
 }
 
 impl Folder {
+    /// This folder, recording in `reads` which files are asked for.
+    #[must_use]
+    pub fn recorded(self, reads: &Reads) -> Self {
+        Self::Recorded(Box::new(self), reads.clone())
+    }
+
+    /// Where the file called `name` is: on disk, or within the embedded scenes.
+    #[must_use]
+    pub fn path(&self, name: &str) -> PathBuf {
+        match self {
+            Self::Disk(folder) => folder.join(name),
+            Self::Embedded(folder) => inside(&folder.join(name)).unwrap_or_else(|| PathBuf::from(name)),
+            Self::Recorded(folder, _) => folder.path(name),
+        }
+    }
+
+    /// The folder that the file called `name` is in.
+    #[must_use]
+    pub fn of(&self, name: &str) -> Self {
+        let holder = |path: PathBuf| path.parent().unwrap_or(Path::new("")).to_owned();
+        match self {
+            Self::Disk(_) => Self::Disk(holder(self.path(name))),
+            Self::Embedded(_) => Self::Embedded(holder(self.path(name))),
+            Self::Recorded(folder, reads) => folder.of(name).recorded(reads),
+        }
+    }
+
     /// The bytes of the file called `name`.
     ///
     /// # Errors
@@ -28,6 +88,10 @@ impl Folder {
     pub fn read(&self, name: &str) -> Result<Vec<u8>, String> {
         let wrong = |reason: &dyn std::fmt::Display| format!("cannot read `{name}`: {reason}");
         match self {
+            Self::Recorded(folder, reads) => {
+                reads.add(FileRead { name: name.to_owned(), path: folder.path(name) });
+                folder.read(name)
+            }
             Self::Embedded(folder) => inside(&folder.join(name))
                 .and_then(|path| SCENES.get_file(path))
                 .map(|file| file.contents().to_vec())
@@ -64,7 +128,7 @@ fn inside(path: &Path) -> Option<PathBuf> {
     Some(plain)
 }
 
-/// The embedded scenes: name (path without `.toml`), text, and the folder of their files; sorted by name.
+/// The embedded scenes, without what is in `assets`: name (path without `.toml`), text, and the folder of their files; sorted by name.
 pub fn embedded_scenes() -> Vec<(String, &'static str, Folder)> {
     fn visit(dir: &'static Dir<'static>, out: &mut Vec<(String, &'static str, Folder)>) {
         for file in dir.files().filter(|f| f.path().extension().is_some_and(|e| e == "toml")) {
@@ -74,7 +138,7 @@ pub fn embedded_scenes() -> Vec<(String, &'static str, Folder)> {
                 out.push((name.replace('\\', "/"), text, Folder::Embedded(folder)));
             }
         }
-        dir.dirs().for_each(|dir| visit(dir, out));
+        dir.dirs().filter(|dir| dir.path() != Path::new(ASSETS)).for_each(|dir| visit(dir, out));
     }
     let mut scenes = Vec::new();
     visit(&SCENES, &mut scenes);
@@ -88,4 +152,34 @@ pub fn leaf_names() -> Vec<String> {
     let files = SCENES.get_dir("leaves").into_iter().flat_map(Dir::files);
     let stems = files.filter_map(|file| Some(file.path().file_stem()?.to_str()?.to_owned()));
     stems.chain(["ball".to_owned()]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_are_recorded() {
+        let reads = Reads::default();
+        let papers = Folder::Embedded("papers".into()).recorded(&reads);
+        assert!(papers.read("../assets/peppers.png").is_ok());
+        assert!(papers.read("../assets/peppers.png").is_ok());
+        assert!(papers.of("../assets/x.toml").read("nothing.obj").is_err());
+        assert!(papers.read("../../Cargo.toml").is_err());
+        let read = |name: &str, path: &str| FileRead { name: name.to_owned(), path: path.into() };
+        assert_eq!(
+            reads.files(),
+            [
+                read("../assets/peppers.png", "assets/peppers.png"),
+                read("nothing.obj", "assets/nothing.obj"),
+                read("../../Cargo.toml", "../../Cargo.toml")
+            ]
+        );
+    }
+
+    #[test]
+    fn assets_are_no_scenes() {
+        let scenes = embedded_scenes();
+        assert!(scenes.len() > 100 && scenes.iter().all(|(name, ..)| !name.starts_with(ASSETS)));
+    }
 }

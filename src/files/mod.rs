@@ -17,7 +17,7 @@ pub use self::exr::{ExrError, ExrHead, PanoramaError, decode_exr, decode_panoram
 pub use atomic_write::{write_bytes, write_whole};
 pub use checksum::{is_edited, seal};
 pub use cryptomatte::add_mattes;
-pub use folder::{Folder, embedded_scenes, leaf_names};
+pub use folder::{FileRead, Folder, Reads, embedded_scenes, leaf_names};
 pub use mesh::{MeshError, decode_mesh, decode_obj, decode_ply};
 pub use picture::{
     PictureError, PngHead, Rgba, decode_grey, decode_linear, decode_png, encode_png, encode_png_rows, encode_png16,

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use rustfft::num_complex::Complex;
-use rustfft::{FftDirection, FftPlanner};
+use rustfft::{FftDirection, FftPlannerScalar};
 
 /// A picture of one channel.
 #[derive(Clone, Debug)]
@@ -46,7 +46,8 @@ pub(super) fn convolve(light: &LightPlane, kernels: impl Fn(i64, i64) -> [f32; 2
 
 /// The 2D transform of an array of `w` by `h`, transposed.
 fn transform(mut data: Vec<Complex<f32>>, [w, h]: [usize; 2], direction: FftDirection) -> Vec<Complex<f32>> {
-    let mut planner = FftPlanner::new();
+    // The scalar one: the same bits on every instruction set, and far less to compile.
+    let mut planner = FftPlannerScalar::new();
     let rows = planner.plan_fft(w, direction);
     data.par_chunks_mut(w).for_each(|row| rows.process(row));
     let mut turned = vec![Complex::new(0.0_f32, 0.0); w * h];

@@ -24,6 +24,13 @@ use crate::skin::{LeavesSpec, PaintSpec, Skin, ThornsSpec};
 #[serde(deny_unknown_fields)]
 #[schemars(title = "Lichtenberg scene")]
 pub struct Scene {
+    /// Another file: the scene takes from it what it does not give itself. The path is relative to the file that names it;
+    /// an included file may include another, and need not be a whole scene. Spaces, steps, objects, materials and claims of
+    /// the same name are taken key by key, as by `like`, and so are `camera`, `ground` and `view`; a shape, a light and all
+    /// else whole. Files that an included file names, such as meshes, are relative to the scene.
+    #[serde(default)]
+    #[schemars(length(min = 1))]
+    pub include: Option<String>,
     /// What it is called.
     #[schemars(length(min = 1))]
     pub title: String,

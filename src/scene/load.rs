@@ -5,7 +5,7 @@ use super::mistake::SceneError;
 use super::schema::schema;
 use super::source::Source;
 use super::tree::Override;
-use super::{animation, document, resolve, tree, validate};
+use super::{animation, document, include, resolve, tree, validate};
 
 /// Reads a scene: parses it, applies `overrides`, and resolves names and files.
 ///
@@ -47,7 +47,8 @@ pub fn load(source: &Source, overrides: &[Override]) -> Result<Loaded, SceneErro
 /// # Errors
 /// [`SceneError`] with every mistake found.
 pub fn load_frame(source: &Source, overrides: &[Override], frame: Option<f64>) -> Result<Loaded, SceneError> {
-    let (mut tree, mut mistakes) = tree::parse(&source.text);
+    let (mut tree, mut mistakes) = tree::parse(&source.text, None);
+    include::include(&mut tree, &source.folder, &mut mistakes);
     tree::apply(&mut tree, overrides, &mut mistakes);
     if let Some(frame) = frame {
         animation::animate(&mut tree, frame, &mut mistakes);

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 use toml::de::{DeTable, DeValue};
 
-use super::mistake::Mistake;
+use super::mistake::{Included, Mistake, Span};
 
 /// A change to a scene from outside: `--set grow.elm.to.limbs.count=30`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -20,8 +21,8 @@ pub struct Override {
 #[derive(Clone, Debug)]
 pub(super) struct Entry {
     pub value: Value,
-    pub span: Option<Range<usize>>,
-    pub key_span: Option<Range<usize>>,
+    pub span: Option<Span>,
+    pub key_span: Option<Span>,
 }
 
 #[derive(Clone, Debug)]
@@ -52,7 +53,7 @@ impl Value {
 
 impl Entry {
     /// Where the entry at this dotted path stands, or the nearest one around it.
-    pub fn find_span(&self, place: &str) -> Option<Range<usize>> {
+    pub fn find_span(&self, place: &str) -> Option<Span> {
         let mut at = self;
         let mut span = None;
         for key in place.split('.').filter(|key| !key.is_empty()) {
@@ -86,41 +87,64 @@ impl Entry {
     }
 }
 
-/// The tree of a TOML text, and its syntax errors.
-pub(super) fn parse(text: &str) -> (Entry, Vec<Mistake>) {
+/// The tree of a TOML text, of the scene's own or of a `file` that it includes, and its syntax errors.
+pub(super) fn parse(text: &str, file: Option<&Arc<Included>>) -> (Entry, Vec<Mistake>) {
     let (table, errors) = DeTable::parse_recoverable(text);
+    let reader = Reader { file };
     let mistakes = errors
         .iter()
-        .map(|error| Mistake { span: error.span(), place: String::new(), message: error.message().to_owned() })
+        .map(|error| Mistake {
+            span: error.span().map(|range| reader.span(range)),
+            place: String::new(),
+            message: error.message().to_owned(),
+        })
         .collect();
-    let span = table.span();
-    let root = Entry { value: convert_table(table.get_ref()), span: Some(span), key_span: None };
-    (root, mistakes)
+    let span = Some(reader.span(table.span()));
+    (Entry { value: reader.table(table.get_ref()), span, key_span: None }, mistakes)
 }
 
-fn convert_table(table: &DeTable<'_>) -> Value {
-    let entries = table.iter().map(|(key, value)| {
-        let entry = Entry { value: convert(value.get_ref()), span: Some(value.span()), key_span: Some(key.span()) };
-        (key.get_ref().to_string(), entry)
-    });
-    Value::Table(entries.collect())
+/// Converts TOML to entries whose spans are of one text.
+struct Reader<'a> {
+    file: Option<&'a Arc<Included>>,
 }
 
-fn convert(value: &DeValue<'_>) -> Value {
-    match value {
-        DeValue::Table(table) => convert_table(table),
-        DeValue::Array(items) => Value::Array(
-            items
-                .iter()
-                .map(|item| Entry { value: convert(item.get_ref()), span: Some(item.span()), key_span: None })
-                .collect(),
-        ),
-        DeValue::String(text) => Value::String(text.to_string()),
-        DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix())
-            .map_or(Value::Other("a whole number of more than 64 bits"), Value::Integer),
-        DeValue::Float(number) => number.as_str().parse().map_or(Value::Other("no number"), Value::Float),
-        DeValue::Boolean(b) => Value::Boolean(*b),
-        DeValue::Datetime(_) => Value::Other("a date"),
+impl Reader<'_> {
+    fn span(&self, range: Range<usize>) -> Span {
+        Span { range, file: self.file.cloned() }
+    }
+
+    fn table(&self, table: &DeTable<'_>) -> Value {
+        let entries = table.iter().map(|(key, value)| {
+            let entry = Entry {
+                value: self.value(value.get_ref()),
+                span: Some(self.span(value.span())),
+                key_span: Some(self.span(key.span())),
+            };
+            (key.get_ref().to_string(), entry)
+        });
+        Value::Table(entries.collect())
+    }
+
+    fn value(&self, value: &DeValue<'_>) -> Value {
+        match value {
+            DeValue::Table(table) => self.table(table),
+            DeValue::Array(items) => Value::Array(
+                items
+                    .iter()
+                    .map(|item| Entry {
+                        value: self.value(item.get_ref()),
+                        span: Some(self.span(item.span())),
+                        key_span: None,
+                    })
+                    .collect(),
+            ),
+            DeValue::String(text) => Value::String(text.to_string()),
+            DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix())
+                .map_or(Value::Other("a whole number of more than 64 bits"), Value::Integer),
+            DeValue::Float(number) => number.as_str().parse().map_or(Value::Other("no number"), Value::Float),
+            DeValue::Boolean(b) => Value::Boolean(*b),
+            DeValue::Datetime(_) => Value::Other("a date"),
+        }
     }
 }
 
@@ -146,8 +170,13 @@ fn without_spans(mut value: Value) -> Value {
 /// Applies `overrides` in order; missing tables on the way are made, and validation judges what comes out.
 pub(super) fn apply(root: &mut Entry, overrides: &[Override], mistakes: &mut Vec<Mistake>) {
     for change in overrides {
+        if change.path == "include" {
+            let message = "what a scene includes cannot be changed from outside".to_owned();
+            mistakes.push(Mistake { span: None, place: change.path.clone(), message });
+            continue;
+        }
         let value = match DeValue::parse(&change.value) {
-            Ok(value) => without_spans(convert(value.get_ref())),
+            Ok(value) => without_spans(Reader { file: None }.value(value.get_ref())),
             Err(_) => Value::String(change.value.clone()),
         };
         let keys: Vec<&str> = change.path.split('.').collect();
@@ -231,9 +260,10 @@ fn like(named: &BTreeMap<String, Entry>, name: &str) -> Option<String> {
     }
 }
 
-fn merge(to: &mut Entry, from: &Entry) {
+/// Takes over what is not in `to`, key by key.
+pub(super) fn merge(to: &mut Entry, from: &Entry) {
     let (Value::Table(to), Value::Table(from)) = (&mut to.value, &from.value) else { return };
-    for (key, value) in from.iter().filter(|(key, _)| *key != "like") {
+    for (key, value) in from {
         match to.get_mut(key) {
             None => {
                 to.insert(key.clone(), value.clone());

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value as Json};
 
-use super::mistake::Mistake;
+use super::mistake::{Mistake, Span};
 use super::tree::{Entry, Value};
 use crate::math::unknown;
 
@@ -151,7 +151,7 @@ impl<'a> Walk<'a> {
                 let mut holder = entry.clone();
                 holder.span = entry.key_span.clone().or(entry.span.clone());
                 if place.is_empty() {
-                    holder.span = Some(0..0);
+                    holder.span = Some(Span { range: 0..0, file: None });
                 }
                 self.wrong(&holder, place, format!("the key `{key}` is missing"));
             }

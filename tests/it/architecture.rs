@@ -311,7 +311,7 @@ fn the_gallery_shows_every_scene() {
     let readme = fs::read_to_string(root().join("README.md")).unwrap();
     for name in scene_names() {
         assert!(readme.contains(&format!("`{name}`")), "README.md does not show `{name}`");
-        let picture = format!("renders/gallery/{}.png", name.replace('/', "-"));
+        let picture = format!("renders/gallery/{}.webp", name.replace('/', "-"));
         assert!(readme.contains(&picture) && root().join(&picture).is_file(), "README.md does not show {picture}");
     }
 }

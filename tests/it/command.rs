@@ -123,7 +123,7 @@ fn text_of(bytes: &[u8]) -> String {
 fn bad_pictures_are_named() {
     let with_map = TWIG.replace("[grow.twig]", "field.map.of.map.file = \"map.png\"\n[grow.twig]");
     let folder = folder_with("twig.toml", &with_map);
-    let good = fs::read(crate::support::root().join("scenes/painted-leaf.png")).unwrap();
+    let good = fs::read(crate::support::root().join("scenes/assets/painted-leaf.png")).unwrap();
     let mut huge = good.clone();
     huge[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
     for bytes in [&good[..good.len() / 2], &huge[..], b"\x89PNG\r\n\x1a\n", b""] {

@@ -11,6 +11,7 @@ mod growth;
 mod house;
 mod irregular;
 mod mutated;
+mod new;
 mod povray;
 mod preview;
 mod readme;

@@ -194,7 +194,7 @@ fn a_billion_voxels_are_allowed() {
 #[test]
 fn limbs_cling_to_a_mesh() {
     let plant = scene(
-        "[shape.vase]\nmesh = { file = \"scenes/vase.obj\" }\n\
+        "[shape.vase]\nmesh = { file = \"scenes/assets/vase.obj\" }\n\
          [space.air]\nshape.shell = { of = \"vase\", outside = 0.5 }\nforbid = \"vase\"\nnodes.voxels = { side = 0.08 }\n\
          [grow.ivy]\nspace = \"air\"\nfrom.at = [[0.9, 0, 0.5], [-0.9, 0, 0.5]]\nwidth.constant = 0.02\n\
          by.voxels = { step = 0.1, rounds = 20, straight = 1, branches = { age = [2, 5] }, cling = { to = \"vase\", within = [0.02, 0.06] } }\n\
