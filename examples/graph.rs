@@ -12,8 +12,8 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 use std::time::Instant;
 
-use lichtenberg::graph::{Graph, Lattice, Weights, Window};
-use lichtenberg::math::{DVec3, Progress, Stream};
+use lichtenberg::graph::{Graph, Lattice, Window};
+use lichtenberg::math::{DVec3, Progress, Stream, Weights};
 use lichtenberg::plan::{Goal, plan};
 
 fn run<const N: usize>(side: u32, alpha: f64, folder: &Path) -> Result<(), Box<dyn Error>> {

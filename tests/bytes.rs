@@ -22,7 +22,7 @@ fn files_are_the_same_everywhere() {
             let lines = alone.install(|| {
                 let scene = load(&Source { name: name.clone(), text: text.to_owned(), folder }, &[]).unwrap();
                 let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
-                let model = model(&scene, &grown, [320, 240]).unwrap();
+                let model = model(&scene, &grown, [320, 240], &Progress::default()).unwrap();
                 digests::digests(&name, &scene, &model)
             });
             let place = scenes.iter().position(|(other, ..)| *other == name).unwrap();

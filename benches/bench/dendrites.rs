@@ -12,19 +12,19 @@ use lichtenberg::files::{Folder, embedded_scenes};
 use lichtenberg::geom::Surface;
 use lichtenberg::grow::Grown;
 use lichtenberg::math::{Progress, mix};
-use lichtenberg::scene::{Override, Resolved, Source, grow, load, model};
+use lichtenberg::scene::{Loaded, Override, Source, grow, load, model};
 use lichtenberg::skeleton::dimension;
 use lichtenberg::trace::{Look, RenderSettings, World, render};
 
 /// Each is run this often, and the median told.
 const RUNS: usize = 9;
 
-fn embedded(name: &str, overrides: &[Override]) -> Result<Resolved, Failure> {
+fn embedded(name: &str, overrides: &[Override]) -> Result<Loaded, Failure> {
     let (name, text, folder) = embedded_scenes().into_iter().find(|(n, ..)| n == name).ok_or("no such scene")?;
     Ok(load(&Source { name, text: text.to_owned(), folder }, overrides)?)
 }
 
-fn grown(scene: &Resolved) -> Vec<Grown> {
+fn grown(scene: &Loaded) -> Vec<Grown> {
     grow(scene, &[], u64::MAX, &Progress::default()).expect("it grows")
 }
 
@@ -49,7 +49,7 @@ fn tables() -> Result<(), Failure> {
             let grown = grown(&scene);
             endpoints = grown.iter().map(|g| g.skeleton.paths.len()).sum();
             if name.ends_with("fig16") {
-                model(&scene, &grown, scene.size).expect("a model");
+                model(&scene, &grown, scene.recipe.size, &Progress::default()).expect("a model");
             }
         };
         let one = one_thread(|| median(&mut run, RUNS));
@@ -160,17 +160,17 @@ fn moss() -> Result<(), Failure> {
     let all = grown(&scene);
     let planned = begun.elapsed().as_secs_f64();
     let strands: usize = all.iter().map(|g| g.skeleton.paths.len()).sum();
-    let model = model(&scene, &all, scene.size)?;
+    let model = model(&scene, &all, scene.recipe.size, &Progress::default())?;
     drop(all);
     let dressed = begun.elapsed().as_secs_f64();
     let templates = Templates::default();
     let origin = Origin::default();
     let mut bytes = [0_u64; 2];
-    Pov::new(&model, &templates, "moss", scene.size, &origin).write_inc(Count(&mut bytes[0]))?;
-    Rib::new(&model, &templates, "moss", scene.size, &origin, RibOptions::default())
+    Pov::new(&model, &templates, "moss", scene.recipe.size, &origin).write_inc(Count(&mut bytes[0]))?;
+    Rib::new(&model, &templates, "moss", scene.recipe.size, &origin, RibOptions::default())
         .write_archive(Count(&mut bytes[1]))?;
     let written = begun.elapsed().as_secs_f64();
-    let view = RenderSettings::new(scene.size, Look::Studio, 4);
+    let view = RenderSettings::new(scene.recipe.size, Look::Studio, 4);
     render(&World::new(&model), &view, &Progress::default())?;
     let whole = begun.elapsed().as_secs_f64();
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

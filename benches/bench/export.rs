@@ -6,7 +6,7 @@ use std::io;
 use crate::clock::median;
 use lichtenberg::export::{Origin, Pov, Templates};
 use lichtenberg::math::{Colour, DVec3, Stream};
-use lichtenberg::model::{Ball, Camera, CameraSpec, Digits, Instance, Material, Mesh, Model, Object, Sky};
+use lichtenberg::model::{Ball, Body, Camera, CameraSpec, Digits, Limbs, Material, Model, Object, Sky};
 use rand::RngExt;
 
 /// A chain of half a million balls that wanders through a box of 12 units, with a cone between each two.
@@ -23,19 +23,8 @@ fn million() -> Model {
         })
         .collect();
     let segments = (1..balls.len() as u32).map(|i| [i - 1, i]).collect();
-    let object = Object {
-        name: "chain".to_owned(),
-        instances: vec![Instance::at(DVec3::ZERO)],
-        material: 0,
-        balls,
-        segments,
-        mesh: Mesh::default(),
-        poses: Vec::new(),
-        digits,
-        shadow: true,
-        thorns: None,
-        is_thorns: false,
-    };
+    let object =
+        Object::new("chain", Body::Limbs(Limbs { balls, segments, ..Limbs::default() }), DVec3::ZERO, digits, 0);
     let grey = Colour([0.5; 3]);
     Model {
         title: "A million primitives".to_owned(),

@@ -6,17 +6,17 @@ use crate::clock::median;
 use lichtenberg::files::Folder;
 use lichtenberg::grow::Grown;
 use lichtenberg::math::Progress;
-use lichtenberg::scene::{Resolved, Source, grow, load};
+use lichtenberg::scene::{Loaded, Source, grow, load};
 
 /// Each is run this often, and the median told.
 const RUNS: usize = 11;
 
-fn scene(text: &str) -> Result<Resolved, Failure> {
+fn scene(text: &str) -> Result<Loaded, Failure> {
     let folder = Folder::Disk(env!("CARGO_MANIFEST_DIR").into());
     Ok(load(&Source { name: "bench".to_owned(), text: text.to_owned(), folder }, &[])?)
 }
 
-fn grown(scene: &Resolved) -> Vec<Grown> {
+fn grown(scene: &Loaded) -> Vec<Grown> {
     grow(scene, &[], u64::MAX, &Progress::default()).expect("it grows")
 }
 

@@ -3,7 +3,8 @@
 use std::hint::black_box;
 
 use crate::clock::median;
-use lichtenberg::graph::{Lattice, Weights, Window};
+use lichtenberg::graph::{Lattice, Window};
+use lichtenberg::math::Weights;
 use lichtenberg::math::{DVec3, Progress, Stream};
 use lichtenberg::plan::{Goal, plan};
 

@@ -12,7 +12,7 @@ use crate::trees::tree;
 use lichtenberg::export::{Origin, Pov, Templates};
 use lichtenberg::files::{Rgba, encode_png};
 use lichtenberg::math::{Colour, DVec3, Progress, srgb_byte};
-use lichtenberg::model::{Ball, Camera, Digits, Instance, Light, Material, Mesh, Model, Object, Projection, Sky};
+use lichtenberg::model::{Ball, Body, Camera, Digits, Light, Limbs, Material, Model, Object, Projection, Sky};
 use lichtenberg::trace::{Look, RenderSettings, World, render};
 use rayon::prelude::*;
 
@@ -28,22 +28,15 @@ fn model(count: usize) -> Model {
         branch: 0,
         level: 0,
     };
+    let limbs = Limbs {
+        balls: cones.iter().flat_map(|c| [ball(c.a, c.ra), ball(c.b, c.rb)]).collect(),
+        segments: (0..count as u32).map(|i| [2 * i, 2 * i + 1]).collect(),
+        ..Limbs::default()
+    };
     Model {
         title: "Bench".to_owned(),
         is_flat: false,
-        objects: vec![Object {
-            name: "tree".to_owned(),
-            instances: vec![Instance::at(DVec3::ZERO)],
-            material: 0,
-            balls: cones.iter().flat_map(|c| [ball(c.a, c.ra), ball(c.b, c.rb)]).collect(),
-            segments: (0..count as u32).map(|i| [2 * i, 2 * i + 1]).collect(),
-            mesh: Mesh::default(),
-            poses: Vec::new(),
-            digits,
-            shadow: true,
-            thorns: None,
-            is_thorns: false,
-        }],
+        objects: vec![Object::new("tree", Body::Limbs(limbs), DVec3::ZERO, digits, 0)],
         materials: vec![("bark".to_owned(), Material::matt(Colour([0.5, 0.4, 0.3])))],
         camera: Camera {
             at: DVec3::new(0.0, -20.0, 6.0),

@@ -15,13 +15,14 @@ use crate::skin::{LeavesSpec, Painting, Skin, ThornsSpec};
 ///
 /// ```
 /// use lichtenberg::assemble::{ObjectRecipe, Recipe, grow, model};
-/// use lichtenberg::geom::{Bounds, Neighbours, Shape};
+/// use lichtenberg::geom::{Neighbours, Shape, Solid};
 /// use lichtenberg::grow::{Endpoints, Generators, LatticeSpace, Paths, Placement, Space, Step};
 /// use lichtenberg::math::{DVec3, Progress};
 /// use lichtenberg::skeleton::Width;
 ///
-/// let sheet = Shape::of_box(Bounds { min: DVec3::ZERO, max: DVec3::new(2.0, 0.0, 3.0) });
-/// let space = LatticeSpace::new(sheet, 0.1, Neighbours::EIGHTEEN)?;
+/// let room = Shape::new(Solid::Box { min: DVec3::ZERO, max: DVec3::new(2.0, 1.0, 3.0) });
+/// let neighbours = Neighbours::new(18).ok_or("18 neighbours")?;
+/// let space = LatticeSpace::new(room, 0.1, neighbours)?;
 /// let step = Step {
 ///     source: Generators::At(vec![DVec3::X]),
 ///     endpoints: vec![Endpoints::new("tips", Placement::At(vec![DVec3::new(0.0, 0.0, 3.0), DVec3::new(2.0, 0.0, 3.0)]))],

@@ -1,17 +1,18 @@
 //! `export`: scenes for other programs.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::args::{ExportArgs, Format, Shadows};
 use super::console::Console;
 use super::error::Failure;
-use super::jobs::Jobs;
+use super::jobs::{Job, Jobs};
 use super::render::check_name;
 use super::write::{Written, note_patterns, read_templates, write_pov, write_rib};
-use crate::export::{Pov, Rib, RibOptions, RibShadows, SvgOptions, write_obj, write_ply, write_svg};
+use crate::export::{Pov, Rib, RibOptions, RibShadows, SvgOptions, Templates, write_obj, write_ply, write_svg};
 use crate::files::write_whole;
 use crate::geom::MarkKind;
-use crate::model::Object;
+use crate::model::{Model, Object};
+use crate::scene::Loaded;
 
 pub fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
     let jobs = Jobs::new(&args.scene, console)?;
@@ -40,39 +41,8 @@ pub fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
             Format::Pov | Format::Rib | Format::Obj | Format::Ply => Vec::new(),
         };
         let model = jobs.model(&scene, &show, console, &progress)?;
-        let written = match args.to {
-            Format::Svg => {
-                write_whole(&first, |out| write_svg(&model, SvgOptions { size: scene.recipe.size }, out))
-                    .map_err(|e| Failure::file("write", &first, &e))?;
-                vec![first]
-            }
-            Format::Obj | Format::Ply => {
-                let wrong = |e: std::io::Error| match e.kind() {
-                    std::io::ErrorKind::InvalidInput => Failure::Usage(format!("{}: {e}", job.name())),
-                    _ => Failure::file("write", &first, &e),
-                };
-                let obj = args.to == Format::Obj;
-                write_whole(&first, |out| if obj { write_obj(&model, out) } else { write_ply(&model, out) })
-                    .map_err(wrong)?;
-                vec![first]
-            }
-            Format::Pov => {
-                let pov =
-                    Pov::new(&model, &templates, name, scene.recipe.size, &job.origin(scene.recipe.seed, "export"));
-                told(write_pov(&pov, folder, name, args.force)?, console)
-            }
-            Format::Rib => {
-                let origin = job.origin(scene.recipe.seed, "export");
-                let shadows = args.shadows.map_or(RibShadows::None, Shadows::of);
-                let options = RibOptions { shadows, displace: args.displace };
-                if args.displace && model.objects.iter().any(leans) {
-                    console.note("note: displaced thorns stand upright: only those that are cones `lean`");
-                }
-                let rib = Rib::new(&model, &templates, name, scene.recipe.size, &origin, options);
-                note_patterns(&rib, console);
-                told(write_rib(&rib, folder, name, args.gzip, args.force)?, console)
-            }
-        };
+        let target = Target { folder, name, first: &first };
+        let written = write(args, &target, job, &scene, &model, &templates, console)?;
         console.done();
         for path in written {
             if console.json {
@@ -85,13 +55,66 @@ pub fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Where a scene goes.
+struct Target<'a> {
+    folder: &'a Path,
+    name: &'a str,
+    /// The file that stands for all.
+    first: &'a Path,
+}
+
+/// Writes `model` in the format asked for; the files.
+fn write(
+    args: &ExportArgs,
+    target: &Target<'_>,
+    job: &Job,
+    scene: &Loaded,
+    model: &Model,
+    templates: &Templates,
+    console: &Console,
+) -> Result<Vec<PathBuf>, Failure> {
+    match args.to {
+        Format::Svg => {
+            write_whole(target.first, |out| write_svg(model, SvgOptions { size: scene.recipe.size }, out))
+                .map_err(|e| Failure::file("write", target.first, &e))?;
+            Ok(vec![target.first.to_owned()])
+        }
+        Format::Obj | Format::Ply => {
+            let wrong = |e: std::io::Error| match e.kind() {
+                std::io::ErrorKind::InvalidInput => Failure::Usage(format!("{}: {e}", job.name())),
+                _ => Failure::file("write", target.first, &e),
+            };
+            let obj = args.to == Format::Obj;
+            write_whole(target.first, |out| if obj { write_obj(model, out) } else { write_ply(model, out) })
+                .map_err(wrong)?;
+            Ok(vec![target.first.to_owned()])
+        }
+        Format::Pov => {
+            let pov =
+                Pov::new(model, templates, target.name, scene.recipe.size, &job.origin(scene.recipe.seed, "export"));
+            Ok(told(write_pov(&pov, target.folder, target.name, args.force)?, console))
+        }
+        Format::Rib => {
+            let origin = job.origin(scene.recipe.seed, "export");
+            let shadows = args.shadows.map_or(RibShadows::None, Shadows::of);
+            let options = RibOptions { shadows, displace: args.displace };
+            if args.displace && model.objects.iter().any(leans) {
+                console.note("note: displaced thorns stand upright: only those that are cones `lean`");
+            }
+            let rib = Rib::new(model, templates, target.name, scene.recipe.size, &origin, options);
+            note_patterns(&rib, console);
+            Ok(told(write_rib(&rib, target.folder, target.name, args.gzip, args.force)?, console))
+        }
+    }
+}
+
 /// Do its thorns lean?
 fn leans(object: &Object) -> bool {
     object.body.limbs().and_then(|limbs| limbs.thorns).is_some_and(|thorns| thorns.lean > 0.0)
 }
 
 /// The files written; tells of those that were left alone.
-fn told(written: Written, console: &Console) -> Vec<std::path::PathBuf> {
+fn told(written: Written, console: &Console) -> Vec<PathBuf> {
     for path in &written.kept {
         console.note(&format!("note: kept {}, which was edited; --force writes over it", path.display()));
     }

@@ -10,6 +10,7 @@ use super::console::Console;
 use super::error::Failure;
 use super::jobs::Jobs;
 use crate::export::{Pov, Templates};
+use crate::grow::Grown;
 use crate::scene;
 use crate::skeleton::{Orders, Skeleton, measure_from};
 
@@ -51,20 +52,6 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
             .map_err(|e| Failure::Usage(e.to_string()))?;
         lap("export");
 
-        let steps: Vec<_> = grown
-            .iter()
-            .map(|step| {
-                json!({
-                    "step": step.name,
-                    "nodes": step.nodes,
-                    "edges": step.edges,
-                    "settled": step.settled,
-                    "dropped": step.dropped,
-                    "skeleton": measure_from(&step.skeleton, step.foot),
-                    "streams": streams(&step.skeleton),
-                })
-            })
-            .collect();
         let all = json!({
             "scene": job.name(),
             "title": scene.recipe.title,
@@ -75,7 +62,7 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
             "primitives": model.primitives(),
             "bytes": { "needed": scene.bytes_needed(), "pov": count.0 },
             "seconds": seconds.iter().map(|(stage, s)| ((*stage).to_owned(), json!(s))).collect::<serde_json::Map<_, _>>(),
-            "steps": steps,
+            "steps": grown.iter().map(step).collect::<Vec<_>>(),
             "claims": scene::check_claims(&scene, &grown),
         });
         if console.json {
@@ -83,17 +70,7 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
             continue;
         }
         console.line(&format!("{}: {} (seed {})", job.name(), scene.recipe.title, scene.recipe.seed));
-        for step in &grown {
-            let m = measure_from(&step.skeleton, step.foot);
-            console.line(&format!(
-                "  {}: {} nodes, {} edges, {} settled; {} endpoints, {} dropped; {} skeleton nodes, tortuosity {:.3}, spread {:.3}",
-                step.name, step.nodes, step.edges, step.settled, m.endpoints, step.dropped, m.nodes, m.tortuosity, m.spread
-            ));
-            console.line(&format!(
-                "    {} orders of Strahler, bifurcation ratio {:.2}, twigs {:.3} long, dimension {:.2}",
-                m.strahler, m.bifurcation, m.twig, m.dimension
-            ));
-        }
+        grown.iter().for_each(|step| print_step(step, console));
         console.line(&format!(
             "  {} primitives, {:.1} MB as POV-Ray, {:.1} MB of memory at most",
             model.primitives(),
@@ -104,6 +81,31 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
         console.line(&format!("  {}", times.join(", ")));
     }
     Ok(())
+}
+
+/// The numbers of a step.
+fn step(step: &Grown) -> serde_json::Value {
+    json!({
+        "step": step.name,
+        "nodes": step.nodes,
+        "edges": step.edges,
+        "settled": step.settled,
+        "dropped": step.dropped,
+        "skeleton": measure_from(&step.skeleton, step.foot),
+        "streams": streams(&step.skeleton),
+    })
+}
+
+fn print_step(step: &Grown, console: &Console) {
+    let m = measure_from(&step.skeleton, step.foot);
+    console.line(&format!(
+        "  {}: {} nodes, {} edges, {} settled; {} endpoints, {} dropped; {} skeleton nodes, tortuosity {:.3}, spread {:.3}",
+        step.name, step.nodes, step.edges, step.settled, m.endpoints, step.dropped, m.nodes, m.tortuosity, m.spread
+    ));
+    console.line(&format!(
+        "    {} orders of Strahler, bifurcation ratio {:.2}, twigs {:.3} long, dimension {:.2}",
+        m.strahler, m.bifurcation, m.twig, m.dimension
+    ));
 }
 
 /// How many limbs of each order of Strahler there are, and how long they are on average.

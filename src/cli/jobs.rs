@@ -96,55 +96,13 @@ impl Jobs {
         for given in &args.scenes {
             let source = find_scene(given, console)?;
             let source = Source { folder: source.folder.recorded(&reads), ..source };
-            let stem = Path::new(given).file_stem().map_or("scene".into(), |s| s.to_string_lossy());
             for (&seed, &frame) in seeds.iter().flat_map(|seed| frames.iter().map(move |frame| (seed, frame))) {
                 for choice in choices(&args.sweep) {
-                    let mut overrides = args.set.clone();
-                    let mut values = BTreeMap::from([("scene".to_owned(), stem.to_string())]);
-                    let mut label = Vec::new();
-                    if let Some(seed) = seed {
-                        overrides.push(Override { path: "seed".to_owned(), value: seed.to_string() });
-                        values.insert("seed".to_owned(), seed.to_string());
-                    }
-                    if args.scenes.len() > 1 {
-                        label.push(stem.to_string());
-                    }
-                    if let Some(frame) = frame {
-                        values.insert("frame".to_owned(), format!("{frame:04}"));
-                        label.push(format!("frame {frame}"));
-                    }
-                    if seeds.len() > 1 {
-                        label.push(format!("seed {}", seed.unwrap_or_default()));
-                    }
-                    for (path, value) in choice {
-                        overrides.push(Override { path: path.to_owned(), value: value.to_owned() });
-                        let key = path.rsplit('.').next().unwrap_or(path);
-                        label.push(format!("{key} {value}"));
-                        for name in [path, key] {
-                            values.insert(name.to_owned(), value.to_owned());
-                        }
-                    }
-                    list.push(Job {
-                        source: source.clone(),
-                        overrides,
-                        given: given.clone(),
-                        values,
-                        frame,
-                        label: label.join(", "),
-                    });
+                    list.push(Job::new(args, &source, given, (seed, seeds.len() > 1), frame, &choice));
                 }
             }
         }
-        let mut pattern = "{scene}".to_owned();
-        if seeds.len() > 1 {
-            pattern.push_str("_{seed}");
-        }
-        if frames.iter().any(Option::is_some) {
-            pattern.push_str("_{frame}");
-        }
-        for sweep in args.sweep.iter().filter(|sweep| sweep.values.len() > 1) {
-            pattern.push_str(&format!("_{{{}}}", sweep.path));
-        }
+        let pattern = pattern(args, seeds.len() > 1);
         let max_memory = args.max_memory.unwrap_or_else(memory::default_limit);
         Ok(Self { list, pattern, size: args.size, max_memory, reads })
     }
@@ -213,7 +171,60 @@ impl Jobs {
     }
 }
 
+/// The pattern that tells the outputs of all jobs apart.
+fn pattern(args: &SceneArgs, has_seeds: bool) -> String {
+    let mut pattern = "{scene}".to_owned();
+    if has_seeds {
+        pattern.push_str("_{seed}");
+    }
+    if args.frames.is_some() {
+        pattern.push_str("_{frame}");
+    }
+    for sweep in args.sweep.iter().filter(|sweep| sweep.values.len() > 1) {
+        pattern.push_str(&format!("_{{{}}}", sweep.path));
+    }
+    pattern
+}
+
 impl Job {
+    /// The job of a scene `given` with one seed, whether it is one of several, one frame, and one value of each sweep.
+    fn new(
+        args: &SceneArgs,
+        source: &Source,
+        given: &str,
+        (seed, is_one_of_seeds): (Option<u64>, bool),
+        frame: Option<u32>,
+        choice: &[(&str, &str)],
+    ) -> Self {
+        let stem = Path::new(given).file_stem().map_or("scene".into(), |s| s.to_string_lossy());
+        let mut overrides = args.set.clone();
+        let mut values = BTreeMap::from([("scene".to_owned(), stem.to_string())]);
+        let mut label = Vec::new();
+        if let Some(seed) = seed {
+            overrides.push(Override { path: "seed".to_owned(), value: seed.to_string() });
+            values.insert("seed".to_owned(), seed.to_string());
+        }
+        if args.scenes.len() > 1 {
+            label.push(stem.to_string());
+        }
+        if let Some(frame) = frame {
+            values.insert("frame".to_owned(), format!("{frame:04}"));
+            label.push(format!("frame {frame}"));
+        }
+        if is_one_of_seeds {
+            label.push(format!("seed {}", seed.unwrap_or_default()));
+        }
+        for &(path, value) in choice {
+            overrides.push(Override { path: path.to_owned(), value: value.to_owned() });
+            let key = path.rsplit('.').next().unwrap_or(path);
+            label.push(format!("{key} {value}"));
+            for name in [path, key] {
+                values.insert(name.to_owned(), value.to_owned());
+            }
+        }
+        Self { source: source.clone(), overrides, given: given.to_owned(), values, frame, label: label.join(", ") }
+    }
+
     /// Its output by `pattern`: `{key}` stands for a value, `####` for its frame with as many digits.
     fn output(&self, pattern: &str) -> Result<String, String> {
         let name = fill(pattern, &self.values)?;

@@ -101,6 +101,20 @@ impl From<Neighbours> for u32 {
     }
 }
 
+/// Calls a function that is generic over the number of neighbours, by a value of it.
+macro_rules! with_neighbours {
+    ($neighbours:expr, $function:ident($($argument:expr),* $(,)?)) => {
+        match $neighbours.count() {
+            4 => $function::<4>($($argument),*),
+            8 => $function::<8>($($argument),*),
+            6 => $function::<6>($($argument),*),
+            18 => $function::<18>($($argument),*),
+            _ => $function::<26>($($argument),*),
+        }
+    };
+}
+pub(crate) use with_neighbours;
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -122,17 +136,3 @@ mod tests {
         assert!(Neighbours::new(7).is_none());
     }
 }
-
-/// Calls a function that is generic over the number of neighbours, by a value of it.
-macro_rules! with_neighbours {
-    ($neighbours:expr, $function:ident($($argument:expr),* $(,)?)) => {
-        match $neighbours.count() {
-            4 => $function::<4>($($argument),*),
-            8 => $function::<8>($($argument),*),
-            6 => $function::<6>($($argument),*),
-            18 => $function::<18>($($argument),*),
-            _ => $function::<26>($($argument),*),
-        }
-    };
-}
-pub(crate) use with_neighbours;

@@ -1,5 +1,6 @@
 //! Cost fields: structured values that modulate the weights in space (Xu and Mould 2008, section 3, Figs 1 and 5).
 
+use std::fmt;
 use std::sync::Arc;
 
 use super::FieldValue;
@@ -22,6 +23,16 @@ pub struct CostField {
     pub inverse: bool,
     /// Multiply the random part of the weight instead of adding to it.
     pub multiply: bool,
+}
+
+/// A function of a place, the same at every call.
+#[derive(Clone)]
+pub struct FieldFunction(pub Arc<dyn Fn(DVec3) -> f64 + Send + Sync>);
+
+impl fmt::Debug for FieldFunction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("FieldFunction")
+    }
 }
 
 /// The quantity that a field measures.
@@ -56,6 +67,8 @@ pub enum Measure {
         /// 1 in the plane, 2 in space, where the map is extruded along y.
         up: usize,
     },
+    /// A function of one's own: finite, at least 0.
+    Function(FieldFunction),
     /// Distance from the nearest stroke of a sketch; in space the sketch is extruded along y.
     Sketch {
         /// The strokes, in the plane of x and y.
@@ -66,6 +79,12 @@ pub enum Measure {
 }
 
 impl CostField {
+    /// `measure` itself, added to the weights.
+    #[must_use]
+    pub fn new(measure: Measure) -> Self {
+        Self { measure, per: 1.0, power: 1.0, scale: 1.0, inverse: false, multiply: false }
+    }
+
     /// The shape that it measures from, if it does.
     pub fn shape_mut(&mut self) -> Option<&mut Shape> {
         if let Measure::Shape(shape) = &mut self.measure { Some(shape) } else { None }
@@ -78,7 +97,7 @@ impl CostField {
             Measure::Axis { along, .. } => along.to_array().map(|c| c.abs() < 1.0),
             Measure::Height { up, .. } => [0, 1, 2].map(|axis| axis == *up),
             Measure::Map { up, .. } | Measure::Sketch { up, .. } => [0, 1, 2].map(|axis| axis == 0 || axis == *up),
-            Measure::Point(_) | Measure::Shape(_) => [true; 3],
+            Measure::Point(_) | Measure::Shape(_) | Measure::Function(_) => [true; 3],
         }
     }
 
@@ -94,6 +113,7 @@ impl CostField {
             Measure::Point(at) => (p - *at).length(),
             Measure::Height { up, cheap, dear } => ((p[*up] - cheap) / (dear - cheap)).clamp(0.0, 1.0),
             Measure::Shape(shape) => shape.distance(p).max(0.0),
+            Measure::Function(FieldFunction(function)) => function(p),
             Measure::Map { picture, frame, up } => {
                 let size = frame.size();
                 picture.at((p.x - frame.min.x) / size.x, (frame.max[*up] - p[*up]) / size[*up])

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::poisson::{CellGrid, poisson};
 use super::scatter_size::MOST_NODES;
+use super::triangular::{REACH, triangular};
 use super::yao::NodeGrid;
 use super::{CostField, FieldValue, Node, Region, ScatterError, Sectors, WeightTable, scatter_estimate};
 use crate::math::{DVec3, Stream, mix};
@@ -17,6 +18,8 @@ pub enum Joining {
     Yao(Sectors),
     /// The geometric graph: all pairs within this distance, in scene units.
     Radius(f64),
+    /// Nodes of a triangular lattice, each with its six neighbours.
+    Triangular,
 }
 
 /// The parameters of a scattered graph but for its region.
@@ -68,6 +71,28 @@ impl EdgeWeights {
     }
 }
 
+/// The edges between all nodes no farther apart than `reach`, from both ends.
+fn within(positions: &[DVec3], owned: Option<&[u8]>, reach: f64) -> (Vec<u32>, Vec<Node>) {
+    let near = NodeGrid::new(positions, owned, reach).within(reach);
+    both_ways(positions.len(), |i| near[i].iter().copied())
+}
+
+impl Joining {
+    /// About how many edges a node has, of a graph of so many nodes `spacing` apart.
+    #[must_use]
+    pub fn degree(&self, nodes: f64, spacing: f64, is_plane: bool) -> f64 {
+        match self {
+            Self::Yao(_) => 12.0,
+            Self::Radius(reach) => {
+                let wide = reach / spacing;
+                let near = if is_plane { 2.6 * wide * wide } else { 3.2 * wide * wide * wide };
+                near.min(nodes)
+            }
+            Self::Triangular => 6.0,
+        }
+    }
+}
+
 impl Scatter {
     /// A Poisson-disc sample of `region` with random numbers from `stream`, and its edges.
     ///
@@ -79,8 +104,12 @@ impl Scatter {
         if estimate.is_nan() || estimate > MOST_NODES {
             return Err(ScatterError::TooMany(estimate));
         }
-        let cells = CellGrid::new(bounds, plan.spacing, plan.is_plane);
-        let positions = poisson(region, &cells, plan.spacing, plan.fixed, stream);
+        let positions = if *plan.joining == Joining::Triangular {
+            triangular(region, plan.spacing)?
+        } else {
+            let cells = CellGrid::new(bounds, plan.spacing, plan.is_plane);
+            poisson(region, &cells, plan.spacing, plan.fixed, stream)
+        };
         if positions.is_empty() {
             return Err(ScatterError::Empty);
         }
@@ -93,10 +122,8 @@ impl Scatter {
                     near[i * sectors.count()..(i + 1) * sectors.count()].iter().copied().filter(|&j| j != u32::MAX)
                 })
             }
-            Joining::Radius(reach) => {
-                let near = NodeGrid::new(&positions, owned, *reach).within(*reach);
-                both_ways(positions.len(), |i| near[i].iter().copied())
-            }
+            Joining::Radius(reach) => within(&positions, owned, *reach),
+            Joining::Triangular => within(&positions, owned, plan.spacing * REACH),
         };
         Ok(Self { positions, owners, starts, ends, spacing: plan.spacing })
     }

@@ -15,6 +15,14 @@ pub struct Endpoints {
     pub placement: Placement,
 }
 
+impl Endpoints {
+    /// A set of the first class.
+    #[must_use]
+    pub fn new(name: &str, placement: Placement) -> Self {
+        Self { name: name.to_owned(), class: 0, placement }
+    }
+}
+
 /// Where a set of endpoints is.
 #[derive(Clone, Debug)]
 pub enum Placement {
@@ -44,6 +52,12 @@ pub struct RandomPlaces {
 }
 
 impl RandomPlaces {
+    /// `count` places in `inside`, or anywhere in the space, with a random stream of this name.
+    #[must_use]
+    pub fn new(count: u32, inside: Option<Shape>, stream: &str) -> Self {
+        Self { count: PerRound::All(f64::from(count)), inside, shell: None, apart: 0.0, stream: stream.to_owned() }
+    }
+
     /// Does `p` lie in `inside`, no deeper than the shell?
     pub(super) fn holds(&self, inside: &Shape, p: DVec3) -> bool {
         inside.contains(p) && self.shell.is_none_or(|shell| inside.depth(p) <= shell)

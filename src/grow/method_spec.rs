@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::baselines::{DbmSpec, DlaSpec};
+use super::colonise::ColoniseSpec;
 use super::paths::FractalSpec;
 use super::regions::RegionsSpec;
 use super::segments::SegmentsSpec;
@@ -25,6 +26,8 @@ pub enum MethodSpec {
     Segments(SegmentsSpec),
     /// By a voxel space automaton that senses light, other growth and surfaces (Greene 1989).
     Voxels(VoxelsSpec),
+    /// By space colonisation, without a graph, as a baseline (Runions, Lane and Prusinkiewicz 2007).
+    Colonise(ColoniseSpec),
     /// By the dielectric breakdown model, as a baseline.
     Dbm(DbmSpec),
     /// By diffusion-limited aggregation, as a baseline.

@@ -8,7 +8,7 @@ use super::rules::Rules;
 use super::space::Space;
 use super::spec::StepSpec;
 use super::step::Method;
-use super::{baselines, paths, regions, segments, voxels};
+use super::{baselines, colonise, paths, regions, segments, voxels};
 
 impl MethodSpec {
     /// What goes with it.
@@ -19,6 +19,7 @@ impl MethodSpec {
             Self::Regions(_) => &regions::RULES,
             Self::Segments(_) => &segments::RULES,
             Self::Voxels(_) => &voxels::RULES,
+            Self::Colonise(_) => &colonise::RULES,
             Self::Dbm(_) => &baselines::DBM,
             Self::Dla(_) => &baselines::DLA,
         }
@@ -37,6 +38,7 @@ impl MethodSpec {
             Self::Regions(regions) => Arc::new(regions.clone()),
             Self::Segments(segments) => Arc::new(segments::resolve(segments, step, lookup)?),
             Self::Voxels(voxels) => Arc::new(voxels::resolve(voxels, step, space, lookup)?),
+            Self::Colonise(spec) => Arc::new(colonise::resolve(spec, step, lookup)?),
             Self::Dbm(dbm) => Arc::new(*dbm),
             Self::Dla(dla) => Arc::new(dla.resolve(space, lookup)),
         })

@@ -5,6 +5,7 @@
 
 mod baselines;
 mod choice;
+mod colonise;
 mod construction;
 mod crowd;
 mod endpoints;
@@ -35,6 +36,7 @@ mod targets;
 mod voxels;
 
 pub use baselines::{DbmSpec, DlaSpec, SIDE, Solver, Walk};
+pub use colonise::{Colonise, ColoniseSpec};
 pub use endpoints::{Endpoints, Placement, RandomPlaces};
 pub use error::{GrowError, Key, Problem};
 pub use grown::{Grown, MOST_NODES, Part};

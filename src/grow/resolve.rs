@@ -4,11 +4,11 @@ use super::endpoints::Endpoints;
 use super::endpoints::RandomPlaces;
 use super::grown::Part;
 use super::lookup::{Lookup, given_shape, note};
-use super::method_spec::MethodSpec;
 use super::paths::Refine;
 use super::placement::placement;
 use super::plants::check_width;
 use super::rounds::{self, indices};
+use super::rules::Needs;
 use super::space::Space;
 use super::spec::{FromSpec, SpreadSpec, StepSpec};
 use super::step::{Generators, Step};
@@ -17,10 +17,11 @@ use crate::skeleton::Width;
 
 /// The step called `name` in `space`, which is that of its own name if that is right; what is wrong is noted.
 pub fn resolve_step(name: &str, spec: &StepSpec, space: Option<&Space>, lookup: &mut dyn Lookup) -> Option<Step> {
-    let is_free = matches!(spec.by, MethodSpec::Segments(_));
+    let rules = spec.by.rules();
+    let is_free = rules.needs == Needs::Nothing;
     match &spec.space {
         Some(_) if is_free => {
-            let message = "growth by segments needs no space: it stays `inside` a shape".to_owned();
+            let message = format!("{} no space: it stays `inside` a shape", rules.subject);
             lookup.wrong("space", message);
         }
         None if !is_free => lookup.wrong("space", "this way of growing needs a `space`".to_owned()),
@@ -32,7 +33,6 @@ pub fn resolve_step(name: &str, spec: &StepSpec, space: Option<&Space>, lookup: 
             "`along` is about the step that this one grows from: it needs `from.all` or `from.ends`, and no `repeat`";
         lookup.wrong("along", message.to_owned());
     }
-    let rules = spec.by.rules();
     rules.check(spec, space, lookup);
     let classes = classes(spec, rules.class);
     let method = spec.by.resolve(spec, space, lookup);

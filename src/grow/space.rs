@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use super::spaces::{ClustersSpec, LatticeSpace, LatticeSpec, ScatterSpace, ScatterSpec, VoxelNodesSpec, VoxelSpace};
 use crate::geom::{Shape, ShapeSpec};
-use crate::graph::FieldSpec;
+use crate::graph::{FieldSpec, TriangularSpec};
 use crate::math::{Ref, Weights};
 
 /// A randomly weighted graph in a shape, where paths are planned.
@@ -49,6 +49,8 @@ pub enum NodesSpec {
     /// Irregular: Poisson-disc nodes, no two nearer than the spacing and with no room for another (Xu and Mould 2012,
     /// section 3.1).
     Scatter(ScatterSpec),
+    /// A triangular lattice in the plane, whose paths favour no axis.
+    Triangular(TriangularSpec),
     /// None: voxels, for growth by voxels (Greene 1989). What is forbidden in the space takes up voxels, and light.
     Voxels(VoxelNodesSpec),
 }
@@ -66,6 +68,7 @@ impl NodesSpec {
         match self {
             Self::Lattice(lattice) => lattice.neighbours.dimensions() == 2,
             Self::Scatter(scatter) => scatter.plane,
+            Self::Triangular(_) => true,
             Self::Voxels(_) => false,
         }
     }

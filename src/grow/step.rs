@@ -154,6 +154,29 @@ pub trait Method: Any + fmt::Debug + Send + Sync {
 }
 
 impl Step {
+    /// A step from the origin without endpoints, with a width of 0: fill in what it needs.
+    #[must_use]
+    pub fn new(name: &str, space: Option<Space>, method: Arc<dyn Method>) -> Self {
+        Self {
+            name: name.to_owned(),
+            space_name: name.to_owned(),
+            space,
+            source: Generators::At(vec![DVec3::ZERO]),
+            endpoints: Vec::new(),
+            classes: vec!["main".to_owned()],
+            method,
+            repeat: None,
+            width: Width::Constant(0.0),
+            form: None,
+            strands: None,
+            symmetry: None,
+            along: 0.0,
+            refine: None,
+            smooth: 0.0,
+            unreached: Unreached::Error,
+        }
+    }
+
     /// Bytes that growing it takes at its peak.
     #[must_use]
     pub fn bytes_needed(&self) -> u64 {

@@ -33,6 +33,14 @@ impl Default for CameraSpec {
     }
 }
 
+impl CameraSpec {
+    /// From the front, parallel: the view of flat scenes.
+    #[must_use]
+    pub fn front() -> Self {
+        Self { rise: Degrees(0.0), angle: Degrees(0.0), ..Self::default() }
+    }
+}
+
 /// Why there is no view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CameraError {
@@ -122,6 +130,12 @@ impl Camera {
         if spec.look_at.is_some() {
             return Err(CameraError::StandsNowhere);
         }
+        Ok(Self::fitted(spec, aspect, balls))
+    }
+
+    /// The camera that is turned as `spec` says, as near as all `balls` allow.
+    fn fitted(spec: &CameraSpec, aspect: f64, balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> Self {
+        let angle = spec.angle.radians();
         let (turn, rise) = (spec.turn.radians(), spec.rise.radians());
         let back = DVec3::new(libm::sin(turn) * libm::cos(rise), -libm::cos(turn) * libm::cos(rise), libm::sin(rise));
         let right = DVec3::new(libm::cos(turn), libm::sin(turn), 0.0);
@@ -144,12 +158,12 @@ impl Camera {
         let size = high - low;
         if angle <= 0.0 {
             let width = (size.x.max(size.y * aspect) * grow).max(1e-6);
-            return Ok(Self {
+            return Self {
                 at: look_at + back * (size.length() + width),
                 look_at,
                 projection: Projection::Parallel { width },
                 aspect,
-            });
+            };
         }
         // A ball of radius r at (x, depth D - z) is seen whole when x + r / cos(h) <= (D - z) tan(h), for each half
         // angle h.
@@ -161,7 +175,7 @@ impl Camera {
                 .map(|(x, tan)| p.dot(back) + (x.abs() + radius * libm::sqrt(1.0 + tan * tan)) / tan)
                 .fold(distance, f64::max)
         });
-        Ok(Self { at: look_at + back * distance, look_at, projection: Projection::Perspective { angle }, aspect })
+        Self { at: look_at + back * distance, look_at, projection: Projection::Perspective { angle }, aspect }
     }
 
     /// Unit vectors to the right, up and forwards of the picture.

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::tree::{Entry, Value, merge, parse};
 use super::mistake::{Included, Mistake, Span};
+use super::tree::{Entry, Value, merge, parse};
 use crate::files::Folder;
 
 /// Files that include each other, one the next, at most.
@@ -142,7 +142,7 @@ mod tests {
         let count = Override { path: "grow.twig.width.constant".to_owned(), value: "0.03".to_owned() };
         let scene = load(&source, &[count]).unwrap();
         let document = scene.document();
-        assert_eq!((scene.title.as_str(), scene.seed), ("Mine", 7));
+        assert_eq!((scene.recipe.title.as_str(), scene.recipe.seed), ("Mine", 7));
         assert!(document.get("include").is_none(), "the document is the whole scene");
         for (place, value) in [
             ("/space/air/weights", serde_json::json!({ "max": 10, "alpha": 3 })),

@@ -15,7 +15,7 @@ use crate::grow::{
     Key, MOST_NODES, Space, SpaceSpec, Step, StepSpec, check_plants, expected_of, resolve_space, resolve_step,
     waits_for_itself,
 };
-use crate::math::{Colour, Degrees};
+use crate::math::Colour;
 use crate::model::{CameraSpec, Light, Material, Sky};
 
 /// Resolves `scene`; adds what is wrong with it.
@@ -122,15 +122,13 @@ impl Resolver<'_> {
         for (name, spec) in &scene.object {
             objects.push(self.object(name, spec, &materials, is_flat));
         }
-        let [plain, flat] =
-            [CameraSpec::default(), CameraSpec { rise: Degrees(0.0), angle: Degrees(0.0), ..CameraSpec::default() }];
         let paper = Colour([if has_view { 0.0 } else { 1.0 }; 3]);
         let default = if is_flat { Sky::plain(paper) } else { Recipe::pale_sky() };
         Some(Seen {
             is_flat,
             objects: objects.into_iter().collect(),
             materials,
-            camera: scene.camera.unwrap_or(if is_flat { flat } else { plain }),
+            camera: scene.camera.unwrap_or_else(if is_flat { CameraSpec::front } else { CameraSpec::default }),
             lights: self.lights(is_flat),
             sky: scene.sky.as_ref().map_or(Some(default), |spec| self.sky(spec)),
         })

@@ -360,7 +360,7 @@ mod tests {
     #[test]
     fn limbs_are_joined() {
         let tree = tree();
-        let mesh = surface(&[&tree], DVec3::ZERO);
+        let mesh = tubes(&[&tree], DVec3::ZERO);
         let closed = ClosedMesh::new(mesh.points.clone(), mesh.triangles.clone()).unwrap();
         assert!(closed.distance(DVec3::new(0.0, 0.0, 2.0)) < 0.0 && closed.distance(DVec3::new(3.0, -2.0, 2.0)) > 0.0);
         let mut piece: Vec<usize> = (0..mesh.points.len()).collect();

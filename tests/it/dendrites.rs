@@ -12,7 +12,7 @@ use proptest::prelude::*;
 fn grown(name: &str, overrides: &[(&str, &str)]) -> (Vec<Grown>, Model) {
     let scene = embedded(name, overrides);
     let grown = grow(&scene, &[], 8 << 30, &Progress::default()).unwrap();
-    let model = model(&scene, &grown, [160, 120]).unwrap();
+    let model = model(&scene, &grown, [160, 120], &Progress::default()).unwrap();
     (grown, model)
 }
 
@@ -32,7 +32,7 @@ fn isosurfaces_are_closed() {
         ("{ isosurface = { of = \"cost\", smooth = 1 } }", ("grow.coral.width.taper.to", "0.8")),
     ] {
         let (_, model) = grown("papers/2007-table1-coral", &[("object.coral.skin", skin), more]);
-        let mesh = &model.objects[0].mesh;
+        let (mesh, _) = model.objects[0].body.mesh().unwrap();
         assert!(mesh.triangles.len() > 1000 && is_closed(&mesh.triangles), "{skin}");
         let sixfold = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|i| mesh.points[i as usize]);
@@ -196,7 +196,7 @@ fn strands_are_painted() {
     let (_, model) = grown("papers/2007-fig14-left", &[]);
     assert_eq!(model.objects.len(), 2);
     let middle = |i: usize| {
-        let balls = &model.objects[i].balls;
+        let balls = &model.objects[i].body.limbs().unwrap().balls;
         balls.iter().map(|ball| ball.centre.x).sum::<f64>() / balls.len() as f64
     };
     let colour = |i: usize| model.materials[model.objects[i].material].1.colour.hex();
@@ -204,8 +204,9 @@ fn strands_are_painted() {
     assert_eq!((&*colour(left), &*colour(right)), ("006633", "993300"));
     // Limbs are numbered anew in each.
     for object in &model.objects {
-        assert!(object.balls.iter().any(|ball| ball.branch == 0));
-        assert!(object.balls.iter().all(|ball| (ball.branch as usize) < object.balls.len()));
+        let balls = &object.body.limbs().unwrap().balls;
+        assert!(balls.iter().any(|ball| ball.branch == 0));
+        assert!(balls.iter().all(|ball| (ball.branch as usize) < balls.len()));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use lichtenberg::export::{Origin, Pov, Rib, RibOptions, SvgOptions, Templates, write_obj, write_ply, write_svg};
 use lichtenberg::model::Model;
-use lichtenberg::scene::Resolved;
+use lichtenberg::scene::Loaded;
 
 /// FNV-1a.
 fn fnv(bytes: &[u8]) -> u64 {
@@ -11,9 +11,9 @@ fn fnv(bytes: &[u8]) -> u64 {
 
 /// A line for the include file and the schematic, one for the RIB archive, and, of scenes that are all mesh, one for OBJ
 /// and one for PLY.
-pub fn digests(name: &str, scene: &Resolved, model: &Model) -> String {
+pub fn digests(name: &str, scene: &Loaded, model: &Model) -> String {
     let templates = Templates::default();
-    let origin = Origin { command: "test".to_owned(), seed: scene.seed };
+    let origin = Origin { command: "test".to_owned(), seed: scene.recipe.seed };
     let mut bytes = Vec::new();
     Pov::new(model, &templates, "digest", [320, 240], &origin).write_inc(&mut bytes).unwrap();
     write_svg(model, SvgOptions { size: [320, 240] }, &mut bytes).unwrap();

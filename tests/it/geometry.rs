@@ -4,9 +4,7 @@ use std::time::{Duration, Instant};
 
 use lichtenberg::bvh::{Cones, Ray, RoundCone, Triangle, Triangles};
 use lichtenberg::math::{Colour, DVec3, Progress, Stream};
-use lichtenberg::model::{
-    Ball, Camera, Digits, Ground, Instance, Light, Material, Mesh, Model, Object, Projection, Sky,
-};
+use lichtenberg::model::{Ball, Body, Camera, Digits, Ground, Light, Limbs, Material, Model, Object, Projection, Sky};
 use lichtenberg::trace::{Look, RenderSettings, World, render};
 use proptest::prelude::*;
 use rand::RngExt;
@@ -20,19 +18,13 @@ fn model(balls: Vec<Ball>, segments: Vec<[u32; 2]>) -> Model {
     Model {
         title: "bad".to_owned(),
         is_flat: false,
-        objects: vec![Object {
-            name: "it".to_owned(),
-            instances: vec![Instance::at(DVec3::ZERO)],
-            material: 0,
-            balls,
-            segments,
-            mesh: Mesh::default(),
-            poses: Vec::new(),
-            digits: Digits(5),
-            shadow: true,
-            thorns: None,
-            is_thorns: false,
-        }],
+        objects: vec![Object::new(
+            "it",
+            Body::Limbs(Limbs { balls, segments, ..Limbs::default() }),
+            DVec3::ZERO,
+            Digits(5),
+            0,
+        )],
         materials: vec![("white".to_owned(), Material::matt(Colour([1.0; 3])))],
         camera: Camera {
             at: DVec3::new(0.0, -10.0, 0.0),
@@ -142,7 +134,8 @@ fn identical_primitives_are_one() {
 fn a_camera_in_a_trunk_sees_its_inside() {
     let mut inside = model(vec![ball([0.0, -10.0, -2.0], 1.0), ball([0.0, -10.0, 2.0], 1.0)], vec![[0, 1]]);
     assert_eq!(cover(&inside), 1.0);
-    inside.objects[0].balls.push(ball([0.0; 3], 1.0));
+    let Body::Limbs(limbs) = &mut inside.objects[0].body else { unreachable!("it has limbs") };
+    limbs.balls.push(ball([0.0; 3], 1.0));
     assert_eq!(cover(&inside), 1.0);
 }
 

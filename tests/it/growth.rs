@@ -6,7 +6,7 @@ use std::fs;
 use crate::support::plants::{degrees, grown, load_text, only, scene, way};
 use crate::support::{embedded, refuses, run_in, text};
 use lichtenberg::files::embedded_scenes;
-use lichtenberg::grow::Method;
+use lichtenberg::grow::{Segments, Step};
 use lichtenberg::math::DVec3;
 use lichtenberg::scene::{Override, Source, load_frame};
 use lichtenberg::skeleton::{Skeleton, measure};
@@ -129,7 +129,7 @@ fn branches_are_binomial() {
         let after = |times: usize| 400.0 * std::iter::repeat_n(growth, times).product::<f64>();
         let ends = after(5);
         assert!((s.paths.len() as f64 / ends - 1.0).abs() < 0.06, "{} of {ends}", s.paths.len());
-        let Method::Segments(segments) = &plant.steps[0].method else { panic!("segments") };
+        let segments = segments(&plant.recipe.steps[0]);
         let expected = segments.expected(segments.starts);
         assert!((expected.ends - ends).abs() < 1e-6);
         let nodes: f64 = (0..=5).map(after).sum();
@@ -301,6 +301,12 @@ fn smoothing_adds_no_sprouts() {
     assert!(most > 31, "smoothing adds nodes");
 }
 
+/// How a step grows by segments.
+fn segments(step: &Step) -> &Segments {
+    let method: &dyn std::any::Any = step.method.as_ref();
+    method.downcast_ref().expect("segments")
+}
+
 /// What each segment starts from is expected from the one before: the product over all, times the parts of a symmetry.
 #[test]
 fn expectations_multiply() {
@@ -309,10 +315,7 @@ fn expectations_multiply() {
          [grow.b]\nfrom.ends = \"a\"\nby.segments = { depth = 2, branches = { chance = 0.5 } }\nwidth.constant = 1\n\
          [grow.c]\nfrom.all = \"b\"\nby.segments = { depth = 2, sprout = { most = 3, chance = 1 }, branches = { chance = 1 } }\nwidth.constant = 1\n",
     );
-    let [a, b, c] = [0, 1, 2].map(|i| match &plant.steps[i].method {
-        Method::Segments(segments) => segments,
-        _ => panic!("segments"),
-    });
+    let [a, b, c] = [0, 1, 2].map(|i| segments(&plant.recipe.steps[i]));
     // 2 * 2^3 ends, six times; the limbs of b grow on at their starts and at (1 + 0.5) nodes after one step.
     assert_eq!((a.starts, b.starts), (2.0, 96.0));
     assert!((c.starts - 96.0 * 2.5).abs() < 1e-9, "{}", c.starts);
@@ -371,7 +374,7 @@ fn threads_do_not_change_a_plant() {
         };
         let one = on(1);
         assert!(one.iter().map(|s| s.nodes.len()).sum::<usize>() > 1500);
-        assert!([2, 3].iter().all(|&threads| on(threads) == one), "{}", scene.title);
+        assert!([2, 3].iter().all(|&threads| on(threads) == one), "{}", scene.recipe.title);
     }
 }
 

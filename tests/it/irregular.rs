@@ -7,7 +7,7 @@ use lichtenberg::files::decode_ply;
 use lichtenberg::geom::ClosedMesh;
 use lichtenberg::grow::Grown;
 use lichtenberg::math::Progress;
-use lichtenberg::scene::{Resolved, grow, model};
+use lichtenberg::scene::{Loaded, grow, model};
 
 const TREE: &str = r#"
 title = "Tree"
@@ -119,8 +119,8 @@ fn bad_input_is_one_clear_error() {
 }
 
 /// Along every limb of every plant width never grows towards the tip, nor do limbs float. Returns how many plants there are.
-pub fn widths_fall(name: &str, scene: &Resolved, grown: &[Grown]) -> usize {
-    let is_plant = |name: &str| scene.steps.iter().any(|s| s.name == name && s.width.starts_plant().is_some());
+pub fn widths_fall(name: &str, scene: &Loaded, grown: &[Grown]) -> usize {
+    let is_plant = |name: &str| scene.recipe.steps.iter().any(|s| s.name == name && s.width.starts_plant().is_some());
     let plants = grown.iter().filter(|step| is_plant(&step.name));
     for step in plants.clone() {
         for (from, to) in step.skeleton.segments() {
@@ -193,11 +193,12 @@ fn trees_compete_for_light() {
 fn obstacles_are_kept_clear() {
     let scene = embedded("hedge-against-wall", &[]);
     let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
-    let model = model(&scene, &grown, [64, 64]).unwrap();
+    let model = model(&scene, &grown, [64, 64], &Progress::default()).unwrap();
     let inside = model
         .objects
         .iter()
-        .flat_map(|o| o.balls.iter().map(|b| b.centre + o.instances[0].at))
+        .filter_map(|o| Some((o.body.limbs()?, o.instances[0].at)))
+        .flat_map(|(limbs, at)| limbs.balls.iter().map(move |b| b.centre + at))
         .filter(|p| p.x.abs() < 4.9 && p.y > 0.68 && p.y < 0.92 && p.z < 2.5)
         .count();
     // Smoothing may graze it.

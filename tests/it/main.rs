@@ -5,6 +5,7 @@ mod command;
 mod compare;
 mod dendrites;
 mod digests;
+mod examples;
 mod exr;
 mod geometry;
 mod growth;

@@ -95,7 +95,7 @@ proptest! {
             Err(error) => prop_assert!(!error.mistakes.is_empty() && !error.to_string().is_empty()),
             Ok(scene) => {
                 if let Ok(grown) = grow(&scene, &[], 32 << 20, &Progress::default())
-                    && let Ok(model) = model(&scene, &grown, [64, 48])
+                    && let Ok(model) = model(&scene, &grown, [64, 48], &Progress::default())
                 {
                     let mut out = Vec::new();
                     Pov::new(&model, &Templates::default(), "x", [64, 48], &Origin::default()).write_inc(&mut out).unwrap();

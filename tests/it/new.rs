@@ -1,13 +1,12 @@
 //! `new`: every embedded scene can be taken and works where it then is; nothing that it reads is written over.
 
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use lichtenberg::files::decode_png;
 use crate::support::{lichtenberg, run_in, scene_names, succeed_in, text};
+use lichtenberg::files::decode_png;
 
 /// Every file below `folder`, by its path in it.
 fn files(folder: &Path) -> Vec<PathBuf> {

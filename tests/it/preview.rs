@@ -49,7 +49,7 @@ fn agrees_with_povray_to_the_pixel() {
     require_povray();
     let is_panel = |name: &str| name.starts_with("papers/2012");
     let mut work: Vec<(String, &str)> = Vec::new();
-    let names: Vec<String> = scene_names().into_iter().filter(|name| !embedded(name, &[]).is_flat).collect();
+    let names: Vec<String> = scene_names().into_iter().filter(|name| !embedded(name, &[]).recipe.is_flat).collect();
     assert!(names.len() >= 45, "scenes in space");
     for name in sample(names, 12) {
         if !is_panel(&name) {
@@ -97,7 +97,7 @@ fn the_studio_is_carried_over() {
 fn threads_and_crops_change_nothing() {
     let scene = embedded("grove", &[("grow.elm.to.twigs.count", "120")]);
     let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
-    let model = model(&scene, &grown, [96, 64]).unwrap();
+    let model = model(&scene, &grown, [96, 64], &Progress::default()).unwrap();
     let world = World::new(&model);
     for look in [Look::Studio, Look::Exact] {
         let view = RenderSettings { data: true, ..RenderSettings::new([96, 64], look, 4) };

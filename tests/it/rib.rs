@@ -10,7 +10,7 @@ use lichtenberg::scene::{grow, model};
 fn modelled(name: &str) -> Model {
     let scene = embedded(name, &[]);
     let grown = grow(&scene, &[], 8 << 30, &Progress::default()).unwrap();
-    model(&scene, &grown, [160, 120]).unwrap()
+    model(&scene, &grown, [160, 120], &Progress::default()).unwrap()
 }
 
 fn exported(model: &Model, options: RibOptions) -> (String, String) {
@@ -44,7 +44,8 @@ fn check_object(object: &Object, found: &[Primitive], scene: &str) {
     let smallest = 1.0 / object.digits.scale();
     let mut found = found.iter().peekable();
     for place in &object.instances {
-        for ball in &object.balls {
+        let limbs = object.body.limbs().cloned().unwrap_or_default();
+        for ball in &limbs.balls {
             // No renderer takes a radius that is 0 as written.
             if ball.radius < smallest * 0.5 {
                 continue;
@@ -53,8 +54,8 @@ fn check_object(object: &Object, found: &[Primitive], scene: &str) {
             let Some(Primitive::Sphere { centre: c, radius: r }) = found.next() else { panic!("{name}: no sphere") };
             assert!(near(*c, centre, size) && (r - radius).abs() <= 1e-4 * size, "{name}: {c:?} {r} {centre} {radius}");
         }
-        for &[a, b] in &object.segments {
-            let (a, b) = (&object.balls[a as usize], &object.balls[b as usize]);
+        for &[a, b] in &limbs.segments {
+            let (a, b) = (&limbs.balls[a as usize], &limbs.balls[b as usize]);
             let Some((fa, ra, fb, rb)) = tangent(a.centre, a.radius, b.centre, b.radius) else { continue };
             // What is shorter or thinner than a digit may be left out.
             let is_tiny = (fb - fa).length() < smallest || ra.max(rb) < smallest;
@@ -79,11 +80,10 @@ fn check_object(object: &Object, found: &[Primitive], scene: &str) {
             assert!(is_it, "{name}: {pa:?} {qa} {pb:?} {qb}, not {fa} {ra} {fb} {rb}");
             found.next();
         }
-        let as_it_is = [None];
-        let posed: Vec<_> = object.poses.iter().map(Some).collect();
-        for pose in if posed.is_empty() { &as_it_is[..] } else { &posed[..] } {
+        let Some((mesh, poses)) = object.body.mesh() else { continue };
+        for pose in poses {
             let put = |p: DVec3| place.to_world(pose.map_or(p, |pose| pose.at + pose.axes * p));
-            let mut triangles = object.mesh.triangles.iter();
+            let mut triangles = mesh.triangles.iter();
             while triangles.len() > 0 {
                 let Some(Primitive::Polygons { points, normals, faces }) = found.next() else {
                     panic!("{name}: no mesh")
@@ -94,9 +94,9 @@ fn check_object(object: &Object, found: &[Primitive], scene: &str) {
                     let wanted = [a, c, b];
                     assert_eq!(face.len(), 3);
                     for (&i, &corner) in face.iter().zip(&wanted) {
-                        assert!(near(points[i], put(object.mesh.points[corner]), size), "{name}: corner {corner}");
+                        assert!(near(points[i], put(mesh.points[corner]), size), "{name}: corner {corner}");
                         if !normals.is_empty() && pose.is_none() && place.turn == 0.0 && place.scale == 1.0 {
-                            assert!(near(normals[i], object.mesh.normals[corner], 1.0), "{name}: normal {corner}");
+                            assert!(near(normals[i], mesh.normals[corner], 1.0), "{name}: normal {corner}");
                         }
                     }
                     // Clockwise from outside, where normals tell it.
@@ -190,7 +190,7 @@ fn shadows_and_displacement_are_told_apart() {
     assert!(scene.contains("MakeShadow \"scene-light") && scene.contains("\"shadowdistant\""));
     assert!(archive.contains("Displacement \"thorns\"") && archive.contains("\"displacementbound\" \"float sphere\""));
     let world = read(&scene, &archive);
-    let thorns = model.objects.iter().filter(|object| object.is_thorns).count();
+    let thorns = model.objects.iter().filter(|object| object.body.limbs().is_some_and(|limbs| limbs.is_thorns)).count();
     assert!(thorns > 0);
     assert_eq!(world.objects.iter().filter(|o| o.0 != "sky" && o.0 != "ground").count(), model.objects.len() - thorns);
     let (scene, _) = exported(&model, RibOptions { shadows: RibShadows::Rays, displace: false });

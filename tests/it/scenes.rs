@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use lichtenberg::grow::Grown;
 use lichtenberg::math::Progress;
-use lichtenberg::scene::{Resolved, check_claims, grow, model};
+use lichtenberg::scene::{Loaded, check_claims, grow, model};
 use rayon::prelude::*;
 
 use crate::support::{embedded, panic_text, scene_names};
@@ -27,7 +27,7 @@ static CHECKED: LazyLock<Vec<Checked>> = LazyLock::new(|| {
 fn check(name: &str) -> Checked {
     let scene = embedded(name, &[]);
     let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
-    let model = model(&scene, &grown, [320, 240]).unwrap();
+    let model = model(&scene, &grown, [320, 240], &Progress::default()).unwrap();
     Checked {
         digests: told(|| crate::digests::digests(name, &scene, &model)),
         claims: told(|| claims_hold(name, &scene, &grown)),
@@ -49,7 +49,7 @@ fn of_every_scene<T>(found: impl Fn(&'static Checked) -> &'static Result<T, Stri
     good.into_iter().filter_map(Result::ok).collect()
 }
 
-fn claims_hold(name: &str, scene: &Resolved, grown: &[Grown]) {
+fn claims_hold(name: &str, scene: &Loaded, grown: &[Grown]) {
     let findings = check_claims(scene, grown);
     assert_eq!(findings.len(), scene.claims.len(), "{name}: every claim is measured");
     assert!(!findings.is_empty(), "{name} claims nothing");

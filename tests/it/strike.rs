@@ -397,7 +397,9 @@ fn animations_have_frames() {
     let at_frame = |until: &str| {
         let scene = embedded("leader", &[("object.lightning.until", until)]);
         let grown = grow(&scene, &[], 1 << 30, &Progress::default()).unwrap();
-        lichtenberg::scene::model(&scene, &grown, scene.size).unwrap().strokes[0].pieces.clone()
+        lichtenberg::scene::model(&scene, &grown, scene.recipe.size, &Progress::default()).unwrap().strokes[0]
+            .pieces
+            .clone()
     };
     let (young, old) = (at_frame("0.4"), at_frame("0.7"));
     let kept = young.iter().filter(|piece| old.contains(piece)).count();

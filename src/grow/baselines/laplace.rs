@@ -194,6 +194,7 @@ impl Laplace {
 mod tests {
     use super::*;
     use crate::graph::Window;
+    use crate::math::Weights;
     use crate::math::{DVec3, Stream};
 
     /// Between a row at 0 and a row at 1 the potential is even in the distance.

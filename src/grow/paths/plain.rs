@@ -132,11 +132,10 @@ fn grow(step: &Step, site: &mut dyn PathSite, context: &Context<'_>) -> Result<(
     let (targets, legs) = targets(step, site, context)?;
     let site: &dyn PathSite = site;
     let generators = delayed(step, site, &starts, context)?;
-    // Generators have the last word, then what was told first.
+    // Generators have the last word.
     let told = targets.iter().filter_map(|target| Some((target.node, target.at?)));
     let stops = legs.iter().flat_map(|leg| leg.stops.iter().copied());
-    let told: Vec<(Node, DVec3)> = told.chain(stops).collect();
-    let told = told.into_iter().rev().chain(starts.iter().filter_map(|&(node, at)| Some((node, at?))));
+    let told = told.chain(stops).chain(starts.iter().filter_map(|&(node, at)| Some((node, at?))));
     let mut growing = Growing {
         step,
         site,

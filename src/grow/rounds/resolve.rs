@@ -23,16 +23,46 @@ pub(in crate::grow) fn resolve(
     lookup: &mut dyn Lookup,
 ) -> Option<Repeat> {
     let at = |key: &str| format!("repeat.{key}");
-    if !matches!(space?, Space::Scatter(_)) {
+    let space = space?;
+    check(spec, step, space, lookup);
+    let is_plane = space.up() == 1;
+    let lifespan = spec.lifespan.clone().unwrap_or(LifespanSpec { first: spec.times, loss: Loss::default() });
+    let rounds = indices(spec);
+    if !spec.size.is_within(rounds, 1e-6, 1e6) {
+        lookup.wrong(&at("size"), "sizes are above 0 in every round".to_owned());
+    }
+    let up = if is_plane { DVec3::Y } else { DVec3::Z };
+    let turns: Vec<_> =
+        spec.turn.iter().map(|(name, spec)| turn(lookup, &at(&format!("turn.{name}")), spec, rounds, up)).collect();
+    let influences: Vec<_> = spec
+        .influence
+        .iter()
+        .map(|(name, spec)| influence(lookup, &at(&format!("influence.{name}")), name, spec, is_plane))
+        .collect();
+    check_chances(&lifespan.loss, &at("lifespan.loss.chances"), lookup);
+    Some(Repeat {
+        times: spec.times,
+        size: spec.size.clone(),
+        by: spec.by,
+        orient: spec.orient,
+        turns: turns.into_iter().collect::<Option<_>>()?,
+        lifespan,
+        influences: influences.into_iter().collect::<Option<_>>()?,
+    })
+}
+
+/// Notes keys of `step` that do not go with rounds.
+fn check(spec: &RepeatSpec, step: &StepSpec, space: &Space, lookup: &mut dyn Lookup) {
+    if !matches!(space, Space::Scatter(_)) {
         let message = "a repeated step needs scattered nodes (`nodes.scatter`) in its space".to_owned();
         lookup.wrong("space", message);
     }
-    if let Space::Scatter(scatter) = space?
+    if let Space::Scatter(scatter) = space
         && scatter.clusters.is_some()
     {
         lookup.wrong("space", "a repeated step's space has no clusters".to_owned());
     }
-    if let Space::Scatter(scatter) = space?
+    if let Space::Scatter(scatter) = space
         && scatter
             .fields
             .iter()
@@ -50,47 +80,28 @@ pub(in crate::grow) fn resolve(
         let message = "endpoints around ends have streams of their own".to_owned();
         lookup.wrong(&format!("to.{name}.stream"), message);
     }
-    let is_plane = matches!(space?, Space::Scatter(scatter) if scatter.is_plane);
+    let is_plane = space.up() == 1;
     if let Orient::Along(Point(along)) = spec.orient
         && (along == DVec3::ZERO || (is_plane && along.z != 0.0))
     {
-        lookup.wrong(&at("orient.along"), "a direction is not zero, and in a flat scene has no z".to_owned());
+        lookup.wrong("repeat.orient.along", "a direction is not zero, and in a flat scene has no z".to_owned());
     }
     if step.smooth > 0.0 {
         let message = "the limbs of a repeated step are smoothed by `form`, where the plant starts".to_owned();
         lookup.wrong("smooth", message);
     }
-    let lifespan = spec.lifespan.clone().unwrap_or(LifespanSpec { first: spec.times, loss: Loss::default() });
-    let rounds = indices(spec);
-    if !spec.size.is_within(rounds, 1e-6, 1e6) {
-        lookup.wrong(&at("size"), "sizes are above 0 in every round".to_owned());
+}
+
+/// Chances are from 0 to 1 and add up to 1.
+fn check_chances(loss: &Loss, key: &str, lookup: &mut dyn Lookup) {
+    let Loss::Chances(chances) = loss else { return };
+    let sum: f64 = chances.iter().map(|[chance, _]| chance).sum();
+    let is_fine = chances.iter().all(|&[chance, loss]| chance >= 0.0 && (1.0..=64.0).contains(&loss));
+    if !is_fine || (sum - 1.0).abs() > 1e-6 {
+        let message =
+            format!("chances are from 0 to 1 and add up to 1 (not {sum}), each with a loss from 1 to 64 rounds");
+        lookup.wrong(key, message);
     }
-    let up = if matches!(space?, Space::Scatter(s) if s.is_plane) { DVec3::Y } else { DVec3::Z };
-    let turns: Vec<_> =
-        spec.turn.iter().map(|(name, spec)| turn(lookup, &at(&format!("turn.{name}")), spec, rounds, up)).collect();
-    let influences: Vec<_> = spec
-        .influence
-        .iter()
-        .map(|(name, spec)| influence(lookup, &at(&format!("influence.{name}")), name, spec, is_plane))
-        .collect();
-    if let Loss::Chances(chances) = &lifespan.loss {
-        let sum: f64 = chances.iter().map(|[chance, _]| chance).sum();
-        let is_fine = chances.iter().all(|&[chance, loss]| chance >= 0.0 && (1.0..=64.0).contains(&loss));
-        if !is_fine || (sum - 1.0).abs() > 1e-6 {
-            let message =
-                format!("chances are from 0 to 1 and add up to 1 (not {sum}), each with a loss from 1 to 64 rounds");
-            lookup.wrong(&at("lifespan.loss.chances"), message);
-        }
-    }
-    Some(Repeat {
-        times: spec.times,
-        size: spec.size.clone(),
-        by: spec.by,
-        orient: spec.orient,
-        turns: turns.into_iter().collect::<Option<_>>()?,
-        lifespan,
-        influences: influences.into_iter().collect::<Option<_>>()?,
-    })
 }
 
 fn turn(lookup: &mut dyn Lookup, place: &str, spec: &TurnSpec, times: u32, up: DVec3) -> Option<Turn> {

@@ -41,6 +41,16 @@ pub struct LatticeSpace {
 }
 
 impl LatticeSpace {
+    /// A lattice with weights from 1 to 10, and nothing forbidden.
+    ///
+    /// # Errors
+    /// As [`Window::new`].
+    pub fn new(shape: Shape, spacing: f64, neighbours: Neighbours) -> Result<Self, LatticeError> {
+        let window = Self::window(&shape, spacing, neighbours)?;
+        let (weights, fields, stream) = (Weights::default(), Vec::new(), "space".to_owned());
+        Ok(Self { shape, forbid: None, window, neighbours, weights, fields, stream })
+    }
+
     /// Every shape in it, to change.
     pub(in crate::grow) fn shapes_mut(&mut self) -> Vec<&mut Shape> {
         let fields = self.fields.iter_mut().filter_map(CostField::shape_mut);

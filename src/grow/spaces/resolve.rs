@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{Clusters, LatticeSpace, LatticeSpec, ScatterSpace, ScatterSpec, VoxelNodesSpec, VoxelSpace};
 use crate::geom::{Bounds, Shape, Strokes};
-use crate::graph::{CostField, FieldSpec, FieldUse, HeightEnd, Joining, Measure, MeasureSpec, Sectors};
+use crate::graph::{CostField, FieldSpec, FieldUse, HeightEnd, Joining, Measure, MeasureSpec, Sectors, TriangularSpec};
 use crate::grow::lookup::{Lookup, given_shape, note};
 use crate::grow::space::{NodesSpec, Space, SpaceSpec};
 use crate::math::{DVec3, Point, Weights};
@@ -48,6 +48,7 @@ pub fn resolve_space(name: &str, spec: &SpaceSpec, lookup: &mut dyn Lookup) -> O
         NodesSpec::Lattice(nodes) => lattice(nodes, spec, common, lookup).map(Space::Lattice),
         NodesSpec::Voxels(nodes) => voxels(nodes, spec, common, lookup).map(Space::Voxels),
         NodesSpec::Scatter(nodes) => scatter(nodes, spec, common, lookup).map(Space::Scatter),
+        NodesSpec::Triangular(nodes) => triangular(nodes, spec, common, lookup).map(Space::Scatter),
     }
 }
 
@@ -102,23 +103,40 @@ fn scatter(nodes: ScatterSpec, spec: &SpaceSpec, common: Common, lookup: &mut dy
     };
     let Common { shape, forbid, weights, fields, stream } = common;
     let space = ScatterSpace { shape, forbid, spacing, is_plane: plane, joining, clusters, weights, fields, stream };
-    check_scatter(&space, lookup)?;
+    check_scatter("nodes.scatter", &space, lookup)?;
     Some(space)
 }
 
-fn check_scatter(space: &ScatterSpace, lookup: &mut dyn Lookup) -> Option<()> {
+fn triangular(
+    nodes: TriangularSpec,
+    spec: &SpaceSpec,
+    common: Common,
+    lookup: &mut dyn Lookup,
+) -> Option<ScatterSpace> {
+    if spec.clusters.is_some() {
+        lookup.wrong("clusters", "clusters need scattered nodes (`nodes.scatter`)".to_owned());
+    }
+    let Common { shape, forbid, weights, fields, stream } = common;
+    let (spacing, joining) = (nodes.spacing, Joining::Triangular);
+    let space =
+        ScatterSpace { shape, forbid, spacing, is_plane: true, joining, clusters: None, weights, fields, stream };
+    check_scatter("nodes.triangular", &space, lookup)?;
+    Some(space)
+}
+
+fn check_scatter(nodes: &str, space: &ScatterSpace, lookup: &mut dyn Lookup) -> Option<()> {
     let estimate = space.estimate();
     if estimate.is_nan() || estimate > MOST_SCATTERED {
         let message = format!(
             "about {estimate:.1e} nodes are too many ({MOST_SCATTERED:.0e} at most): use a wider spacing or a smaller shape"
         );
-        lookup.wrong("nodes.scatter.spacing", message);
+        lookup.wrong(&format!("{nodes}.spacing"), message);
         return None;
     }
     let edges = space.edges_estimate();
     if edges > MOST_EDGES {
         let message = format!("about {edges:.1e} edges are too many ({MOST_EDGES:.0e} at most): use a smaller radius");
-        lookup.wrong("nodes.scatter.radius", message);
+        lookup.wrong(&format!("{nodes}.radius"), message);
         return None;
     }
     let bounds = space.shape.bounds();

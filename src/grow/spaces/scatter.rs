@@ -163,14 +163,7 @@ impl ScatterSpace {
     #[must_use]
     pub fn edges_estimate(&self) -> f64 {
         let nodes = self.estimate();
-        match self.joining {
-            Joining::Yao(_) => 12.0 * nodes,
-            Joining::Radius(reach) => {
-                let wide = reach / self.spacing;
-                let near = if self.is_plane { 2.6 * wide * wide } else { 3.2 * wide * wide * wide };
-                nodes * near.min(nodes)
-            }
-        }
+        nodes * self.joining.degree(nodes, self.spacing, self.is_plane)
     }
 
     /// Bytes that planning in it takes at its peak.

@@ -5,11 +5,13 @@
 mod bark;
 mod expr;
 mod figure;
+mod lenticels;
 mod moss;
 
 pub use bark::Bark;
 pub use expr::Expr;
 pub use figure::Figure;
+pub use lenticels::Lenticels;
 pub use moss::Moss;
 
 use schemars::JsonSchema;
@@ -24,6 +26,8 @@ pub enum Pattern {
     Bark(Bark),
     /// Moss on the upper side of the limb.
     Moss(Moss),
+    /// Short bands across the limb.
+    Lenticels(Lenticels),
 }
 
 impl Pattern {
@@ -33,6 +37,7 @@ impl Pattern {
         match self {
             Self::Bark(bark) => bark,
             Self::Moss(moss) => moss,
+            Self::Lenticels(lenticels) => lenticels,
         }
     }
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use lichtenberg::files::embedded_scenes;
-use lichtenberg::scene::{Override, Resolved, Source, load};
+use lichtenberg::scene::{Loaded, Override, Source, load};
 
 /// The command under test, not told that CI runs it: only a test says so.
 pub fn lichtenberg() -> Command {
@@ -59,7 +59,7 @@ pub fn scene_names() -> Vec<String> {
 }
 
 /// An embedded scene with overrides.
-pub fn embedded(name: &str, overrides: &[(&str, &str)]) -> Resolved {
+pub fn embedded(name: &str, overrides: &[(&str, &str)]) -> Loaded {
     let (name, text, folder) = embedded_scenes().into_iter().find(|(n, ..)| n == name).expect("an embedded scene");
     let overrides: Vec<_> = overrides
         .iter()

@@ -3,14 +3,14 @@
 use lichtenberg::files::Folder;
 use lichtenberg::grow::Grown;
 use lichtenberg::math::{DVec3, Progress};
-use lichtenberg::scene::{Resolved, SceneError, Source, grow, load};
+use lichtenberg::scene::{Loaded, SceneError, Source, grow, load};
 use lichtenberg::skeleton::Skeleton;
 
-pub fn scene(steps: &str) -> Resolved {
+pub fn scene(steps: &str) -> Loaded {
     load_text(steps).unwrap_or_else(|error| panic!("{error}"))
 }
 
-pub fn load_text(steps: &str) -> Result<Resolved, SceneError> {
+pub fn load_text(steps: &str) -> Result<Loaded, SceneError> {
     let objects: Vec<&str> = steps.lines().filter_map(|line| line.strip_prefix("[grow.")?.strip_suffix(']')).collect();
     let object =
         format!("[object.all]\ngrow = {:?}\n", objects.iter().filter(|n| !n.contains('.')).collect::<Vec<_>>());
@@ -19,7 +19,7 @@ pub fn load_text(steps: &str) -> Result<Resolved, SceneError> {
     load(&source, &[])
 }
 
-pub fn grown(scene: &Resolved) -> Vec<Grown> {
+pub fn grown(scene: &Loaded) -> Vec<Grown> {
     grow(scene, &[], 8 << 30, &Progress::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
