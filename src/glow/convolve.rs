@@ -1,8 +1,8 @@
 //! Convolution with broad kernels, by the fast Fourier transform.
 
 use rayon::prelude::*;
-use rustfft::num_complex::Complex;
-use rustfft::{FftDirection, FftPlanner};
+
+use super::fourier::{Complex, Fourier, times};
 
 /// A picture of one number a pixel.
 #[derive(Clone, Debug)]
@@ -16,45 +16,45 @@ pub(super) fn convolve(light: &Plane, kernels: impl Fn(i64, i64) -> [f32; 2] + S
     let [width, height] = light.size;
     // Twice as large, so that nothing comes in from the other side.
     let [w, h] = light.size.map(|s| smooth_size(2 * s));
-    let mut image = vec![Complex::new(0.0_f32, 0.0); w * h];
+    let mut image = vec![[0.0; 2]; w * h];
     for y in 0..height {
         for x in 0..width {
-            image[y * w + x].re = light.values[y * width + x];
+            image[y * w + x][0] = light.values[y * width + x];
         }
     }
     let around = |i: usize, size: usize| if i < size.div_ceil(2) { i as i64 } else { i as i64 - size as i64 };
-    let mut kernel = vec![Complex::new(0.0_f32, 0.0); w * h];
+    let mut kernel = vec![[0.0; 2]; w * h];
     kernel.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
         for (x, value) in row.iter_mut().enumerate() {
-            let [a, b] = kernels(around(x, w), around(y, h));
-            *value = Complex::new(a, b);
+            *value = kernels(around(x, w), around(y, h));
         }
     });
-    let image = transform(image, [w, h], FftDirection::Forward);
-    let mut product = transform(kernel, [w, h], FftDirection::Forward);
+    let image = transform(image, [w, h], false);
+    let mut product = transform(kernel, [w, h], false);
     // Light is real and both kernels are: the one's result is the real part, the other's the imaginary.
-    product.par_iter_mut().zip(&image).for_each(|(k, i)| *k *= i);
-    let spread = transform(product, [h, w], FftDirection::Inverse);
+    product.par_iter_mut().zip(&image).for_each(|(k, i)| *k = times(*k, *i));
+    let spread = transform(product, [h, w], true);
     let scale = 1.0 / (w * h) as f32;
-    let part = |of: fn(&Complex<f32>) -> f32| {
+    let part = |of: fn(&Complex) -> f32| {
         let values =
             (0..height).flat_map(|y| spread[y * w..y * w + width].iter().map(|c| (of(c) * scale).max(0.0))).collect();
         Plane { size: light.size, values }
     };
-    [part(|c| c.re), part(|c| c.im)]
+    [part(|c| c[0]), part(|c| c[1])]
 }
 
 /// The transform of an array of `w` by `h`, as one of `h` by `w`.
-fn transform(mut data: Vec<Complex<f32>>, [w, h]: [usize; 2], direction: FftDirection) -> Vec<Complex<f32>> {
-    let mut planner = FftPlanner::new();
-    let rows = planner.plan_fft(w, direction);
-    data.par_chunks_mut(w).for_each(|row| rows.process(row));
-    let mut turned = vec![Complex::new(0.0_f32, 0.0); w * h];
+fn transform(mut data: Vec<Complex>, [w, h]: [usize; 2], is_inverse: bool) -> Vec<Complex> {
+    let all_rows = |data: &mut [Complex], length: usize| {
+        let rows = Fourier::new(length, is_inverse);
+        data.par_chunks_mut(length).for_each_init(|| vec![[0.0; 2]; length], |room, row| rows.transform(row, room));
+    };
+    all_rows(&mut data, w);
+    let mut turned = vec![[0.0; 2]; w * h];
     turned.par_chunks_mut(h).enumerate().for_each(|(x, column)| {
         column.iter_mut().enumerate().for_each(|(y, value)| *value = data[y * w + x]);
     });
-    let columns = planner.plan_fft(h, direction);
-    turned.par_chunks_mut(h).for_each(|column| columns.process(column));
+    all_rows(&mut turned, h);
     turned
 }
 

@@ -8,6 +8,7 @@ mod canvas;
 mod composite;
 mod convolve;
 mod coverage;
+mod fourier;
 mod near;
 mod scatter;
 mod shine;
