@@ -98,7 +98,6 @@ pub fn told(house: &House, edges: &Edges, circle: &[usize]) -> String {
 }
 
 /// Circles, globs and long functions, to be read.
-#[allow(dead_code, reason = "the program beside the tests prints it")]
 pub fn report(house: &House) -> String {
     let edges = edges(house);
     let circles = circles(house.files.len(), &edges);

@@ -1,8 +1,9 @@
 //! A sample of the scenes for tests that take long: others with every commit, all for `./run-tests --all`.
 
+use std::io::Write;
 use std::process::Command;
 
-/// `size` of the names, told on stdout; all with `LICHTENBERG_TEST_ALL` set.
+/// `size` of the names, told on stderr; all with `LICHTENBERG_TEST_ALL` set.
 pub fn sample(mut names: Vec<String>, size: usize) -> Vec<String> {
     if std::env::var_os("LICHTENBERG_TEST_ALL").is_some() {
         return names;
@@ -10,7 +11,8 @@ pub fn sample(mut names: Vec<String>, size: usize) -> Vec<String> {
     let commit = commit();
     names.sort_by_key(|name| hash(&commit, name));
     names.truncate(size);
-    println!("sample of {commit}: {}", names.join(", "));
+    // Past the capture of tests that pass.
+    let _ = writeln!(std::io::stderr(), "sample of {commit}: {}", names.join(", "));
     names
 }
 
