@@ -57,7 +57,7 @@ impl Bounds {
         self.max - self.min
     }
 
-    /// The middle.
+    /// The centre.
     #[must_use]
     pub fn centre(&self) -> DVec3 {
         (self.min + self.max) * 0.5

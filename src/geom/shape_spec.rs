@@ -15,7 +15,7 @@ use crate::math::{DMat3, DVec2, DVec3, Degrees, Point, Ref, rotation, unknown};
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum SolidSpec {
-    /// All between two corners.
+    /// An axis-aligned box.
     Box {
         /// The corner with the lowest coordinates.
         min: Point,
@@ -24,74 +24,74 @@ pub enum SolidSpec {
     },
     /// A ball; in the plane, a disc.
     Sphere {
-        /// Its middle.
+        /// Its centre.
         centre: Point,
         /// Its radius.
         #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
         radius: f64,
     },
-    /// An ellipsoid along the axes; in the plane, an ellipse.
+    /// An axis-aligned ellipsoid; in the plane, an ellipse.
     Ellipsoid {
-        /// Its middle.
+        /// Its centre.
         centre: Point,
         /// Its half-axes.
         radii: Point,
     },
     /// A cylinder with flat ends.
     Cylinder {
-        /// Middle of one end.
+        /// Centre of one end.
         from: Point,
-        /// Middle of the other end.
+        /// Centre of the other end.
         to: Point,
         /// Its radius.
         #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
         radius: f64,
     },
-    /// A cylinder with round ends.
+    /// A cylinder with hemispherical ends.
     Capsule {
-        /// Middle of one end's ball.
+        /// Centre of one hemisphere.
         from: Point,
-        /// Middle of the other end's ball.
+        /// Centre of the other hemisphere.
         to: Point,
         /// Its radius.
         #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
         radius: f64,
     },
-    /// A cone with flat ends: whole where one of its radii is 0, truncated where none is.
+    /// A cone with flat ends; with two radii above 0, a truncated cone.
     Cone {
-        /// Middle of one end.
+        /// Centre of one end.
         from: Point,
-        /// Middle of the other end.
+        /// Centre of the other end.
         to: Point,
         /// The radius at `from` and at `to`.
         #[schemars(inner(range(min = 0.0, max = 1e6)))]
         radii: [f64; 2],
     },
-    /// All of a ball that lies within an angle of a direction (Xu and Mould 2012, section 3.3.2); a hemisphere with 90
-    /// degrees, the whole ball with 180.
+    /// A spherical sector: the part of a ball within an angle of a direction (Xu and Mould 2012, section 3.3.2); a hemisphere
+    /// with 90 degrees, the whole ball with 180.
     Sector {
-        /// Its tip, the ball's middle; by default the origin.
+        /// Its apex, the ball's centre; by default the origin.
         #[serde(default)]
         at: Option<Point>,
         /// The direction of its axis; by default up.
         #[serde(default)]
         toward: Option<Point>,
-        /// Half of its opening.
+        /// Half of its opening angle.
         #[schemars(range(min = 1.0, max = 180.0))]
         angle: Degrees,
         /// The ball's radius.
         #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
         radius: f64,
     },
-    /// A sketched stroke turned around an axis (2012, section 3.3.1, Fig. 14). In the SVG file the axis is the straight
-    /// stroke of two points, the outline the other; without an axis the page's left edge is it.
+    /// The solid of revolution of a sketched outline (2012, section 3.3.1, Fig. 14). In the SVG file the axis is the straight
+    /// stroke of two points, the outline the other; without an axis the page's left edge is the axis.
     Revolve {
         /// The SVG file, beside the scene.
         sketch: String,
-        /// Where the lower end of the axis is in space; by default the origin.
+        /// The lower end of the axis; by default the origin.
         #[serde(default)]
         from: Option<Point>,
-        /// Where its upper end is.
+        /// The upper end of the axis.
         to: Point,
     },
     /// The inside of a closed triangle mesh.
@@ -101,7 +101,7 @@ pub enum SolidSpec {
     },
     /// Letters (Xu and Mould 2007, Fig. 13): in the plane, or with a `depth` upright in space, seen from the front.
     Letters {
-        /// What they spell; a new line starts a new line.
+        /// The text, of one or more lines.
         #[schemars(length(min = 1, max = 1000))]
         text: String,
         /// A font file (TrueType, OpenType) beside the scene; by default DejaVu Sans Bold.
@@ -110,10 +110,10 @@ pub enum SolidSpec {
         /// The font's size (its em), in scene units: capitals are about 0.7 of it.
         #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
         size: f64,
-        /// Where the baseline starts; by default the origin.
+        /// The start of the first baseline; by default the origin.
         #[serde(default)]
         at: Option<Point>,
-        /// In space: how deep they are, along y.
+        /// In space: their extent along y.
         #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
         depth: Option<f64>,
@@ -122,10 +122,10 @@ pub enum SolidSpec {
     Picture {
         /// A picture beside the scene: PNG or JPEG.
         file: String,
-        /// Its height in scene units; the width follows.
+        /// Its height in scene units; the width follows from the aspect ratio.
         #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
         height: f64,
-        /// Where its lower left corner is; by default the origin.
+        /// Its lower left corner; by default the origin.
         #[serde(default)]
         at: Option<Point>,
         /// Brighter than this, from 0 (black) to 1 (white), is outside.
@@ -135,49 +135,49 @@ pub enum SolidSpec {
         /// Take the bright parts instead.
         #[serde(default)]
         bright: bool,
-        /// In space: how deep it is, along y.
+        /// In space: its extent along y.
         #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
         depth: Option<f64>,
     },
-    /// All near the surface of a shape: a skin around a rock.
+    /// The points near the surface of a shape: a skin around a rock.
     Shell {
         /// The shape.
         of: ShapeSpec,
-        /// How far it reaches outside of the surface.
+        /// Thickness outside the surface.
         #[serde(default)]
         #[schemars(range(min = 0.0, max = 1e6))]
         outside: f64,
-        /// How far it reaches inside.
+        /// Thickness inside the surface.
         #[serde(default)]
         #[schemars(range(min = 0.0, max = 1e6))]
         inside: f64,
     },
     /// What a step with `by.regions` grew: spaces and endpoints with it wait for that step.
     Grown(String),
-    /// Another shape: scaled about the origin, then turned about an axis through it, then moved.
+    /// A shape scaled about the origin, then rotated about an axis through it, then translated.
     Placed {
         /// The shape.
         shape: ShapeSpec,
-        /// Its size over what it was.
+        /// Scale factor.
         #[serde(default = "one")]
         #[schemars(range(min = 1e-6, max = 1e6))]
         scale: f64,
-        /// The axis that it is turned about; by default y, which tilts what is upright towards x.
+        /// The axis of rotation; by default y, which tilts an upright shape towards x.
         #[serde(default)]
         about: Option<Point>,
-        /// By how much it is turned, counterclockwise seen against the axis.
+        /// The angle of rotation, right-handed about the axis.
         #[serde(default)]
         turn: Degrees,
-        /// How far it is moved.
+        /// The translation.
         #[serde(default)]
         by: Option<Point>,
     },
-    /// All that is in at least one of these.
+    /// The union of shapes.
     Union(Vec<ShapeSpec>),
-    /// All that is in every one of these.
+    /// The intersection of shapes.
     Intersection(Vec<ShapeSpec>),
-    /// All that is in the first and in no other.
+    /// The first shape less all others.
     Difference(Vec<ShapeSpec>),
 }
 
@@ -194,7 +194,7 @@ fn half() -> f64 {
 pub enum ShapeSpec {
     /// The name of a shape.
     Named(Ref<Shape>),
-    /// A shape in place.
+    /// A shape written inline.
     Inline(Box<SolidSpec>),
 }
 

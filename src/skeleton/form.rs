@@ -7,20 +7,20 @@ use super::plant::{Plant, PlantNode};
 use super::{SkeletonNode, Width};
 use crate::math::DVec3;
 
-/// How natural limbs are.
+/// The form of natural limbs.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FormSpec {
-    /// Positions are averaged along limbs over about this many nodes to either side; 0 leaves the kinks of the graph.
+    /// Standard deviation, in nodes, of the smoothing along limbs; 0 keeps the kinks of the graph.
     #[schemars(range(min = 0.0, max = 20.0))]
     pub smoothness: f64,
-    /// How near limbs that run side by side are taken for one: less than this share of their radii together. 0 joins none.
+    /// Distance below which limbs that run side by side are merged, as a share of the sum of their radii; 0 merges none.
     #[schemars(range(min = 0.0, max = 4.0))]
     pub merge: f64,
-    /// How much thicker a limb is where it leaves another, as a share of its radius.
+    /// The branch collar: how much thicker a limb is at its fork, as a share of its radius.
     #[schemars(range(min = 0.0, max = 2.0))]
     pub collar: f64,
-    /// Radius at the foot over what it would be.
+    /// The root flare: the factor of the radius at the foot.
     #[schemars(range(min = 1.0, max = 5.0))]
     pub flare: f64,
 }
@@ -31,7 +31,7 @@ impl Default for FormSpec {
     }
 }
 
-/// How natural limbs are.
+/// The form of natural limbs.
 pub type Form = FormSpec;
 
 /// Standard deviation of the smoothing kernel, in radii of the limb, where that exceeds the smoothness.

@@ -6,14 +6,14 @@ use serde::Deserialize;
 use super::{Path, Skeleton};
 use crate::math::{DMat3, DVec3, Point, rotation};
 
-/// What grew stands around an upright axis (in the plane around a point) several times.
+/// Rotational symmetry about an upright axis (in the plane, about a point).
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SymmetrySpec {
-    /// How many times around: 6 for snow.
+    /// The order of the symmetry: 6 for snow.
     #[schemars(range(min = 1, max = 360))]
     pub fold: u32,
-    /// Is each part mirrored too? In the upright plane through the axis and x, before it is turned.
+    /// Add a mirror image of each copy, in the upright plane through the axis and x before rotation.
     #[serde(default)]
     pub mirror: bool,
     /// A point of the axis; by default the origin.

@@ -91,16 +91,15 @@ pub enum Width {
     Taper(Taper),
     /// The same radius everywhere.
     Constant(#[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))] f64),
-    /// By the length of the way to the farthest tip (Xu and Mould 2012, section 3.2).
+    /// By the path length to the farthest tip (Xu and Mould 2012, section 3.2).
     Length(ByLength),
-    /// By what a limb carries: its area is the sum of its children's (Leonardo's rule).
+    /// The pipe model: the cross-section of a limb is the sum of those of its children (Leonardo's rule; Shinozaki et al. 1964).
     Pipe(Pipe),
 }
 
-/// `(s / unit)^z`, scaled so that the plant starts with `root`: s is the length from an endpoint back to a node, through
-/// all the steps before; of several endpoints the one that gives the most counts. With one z for all it is `root (s /
-/// s_max)^z`; with several a larger z makes the ways from its endpoints thicker, as the paper's bare s^z does, whose unit
-/// is the spacing of its graphs.
+/// `(s / unit)^z`, scaled so that the plant starts with `root`: s is the path length from an endpoint back to a node, through
+/// all earlier steps; the maximum over the endpoints counts. With one z for all it is `root (s / s_max)^z`; with several, a
+/// larger z makes the paths to its endpoints thicker, as the paper's bare s^z does, whose unit is the spacing of its graphs.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ByLength {
@@ -113,16 +112,15 @@ pub struct ByLength {
     #[schemars(range(min = 0.0, max = 1e6))]
     pub tip: Option<f64>,
     /// The length whose power is 1, in scene units, given by the step where the plant starts; by default a thousandth of
-    /// the longest way.
+    /// the longest path.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub unit: Option<f64>,
-    /// How quickly ways from this step's endpoints thicken; the paper has 0.6, 0.5, 0.4, 0.3 from the first level to the
-    /// last.
+    /// The exponent for this step's endpoints; the paper has 0.6, 0.5, 0.4, 0.3 from the first level to the last.
     pub z: PerRound,
 }
 
-/// `r^power` is the sum of what the limbs that it carries have.
+/// `r^power` of a limb is the sum of `r^power` of its children.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pipe {
@@ -135,7 +133,7 @@ pub struct Pipe {
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e6))]
     pub tip: Option<f64>,
-    /// 2, unless it is given where the plant starts, keeps the area; trees have 1.8 to 2.7.
+    /// The exponent, given by the step where the plant starts; the default 2 conserves area, trees have 1.8 to 2.7.
     #[serde(default)]
     #[schemars(range(min = 1.0, max = 5.0))]
     pub power: Option<f64>,
