@@ -42,7 +42,7 @@ pub(super) fn dress(
         if poses.is_empty() {
             continue;
         }
-        let part = if recipe.skin == Skin::Mesh {
+        let part = if recipe.skin.is_mesh() {
             leaves.mesh.at_poses(&poses).and_then(|mesh| Object::of_mesh(&name, &mesh, first, leaves.material))
         } else {
             Object::of_poses(&name, &leaves.mesh, poses, first, digits, leaves.material)

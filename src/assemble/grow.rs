@@ -25,7 +25,7 @@ pub fn grow(
 ) -> Result<Vec<Grown>, AssembleError> {
     within(bytes_needed(recipe), max_memory)?;
     let grown = recipe.steps.iter().map(|_| None).collect();
-    let mut scene = Scene { recipe, show, max_memory, progress, grown, repeated: BTreeMap::new() };
+    let mut scene = Schedule { recipe, show, max_memory, progress, grown, repeated: BTreeMap::new() };
     while scene.grown.iter().any(Option::is_none) {
         scene.grow_round()?;
     }
@@ -36,7 +36,7 @@ pub fn grow(
 
 /// All steps on their way. A round holds all that wait for nothing that has not grown, and one repetition of each that is
 /// under way; it reads only what the rounds before made.
-struct Scene<'a> {
+struct Schedule<'a> {
     recipe: &'a Recipe,
     show: &'a [MarkKind],
     max_memory: u64,
@@ -47,7 +47,7 @@ struct Scene<'a> {
     repeated: BTreeMap<usize, Rounds<'a>>,
 }
 
-impl Scene<'_> {
+impl Schedule<'_> {
     fn grow_round(&mut self) -> Result<(), AssembleError> {
         let steps = &self.recipe.steps;
         let is_ready = |i: &usize| {

@@ -179,7 +179,7 @@ pub struct StrikeArgs {
     pub from: Vec<Place>,
     /// The corner that places count from
     #[arg(long, value_enum, default_value = "top-left")]
-    pub origin: Origin,
+    pub origin: PlateOrigin,
     /// The scene that strikes: one with a [view] and a step `bolt` with endpoints `target`, as storm and night-bolt are
     #[arg(long, value_name = "SCENE", default_value = "storm")]
     pub scene: String,
@@ -237,7 +237,7 @@ pub struct StrikeArgs {
 
 /// A corner of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Origin {
+pub enum PlateOrigin {
     /// Places count from the top, as in picture viewers
     TopLeft,
     /// Places count from the bottom, as in Nuke

@@ -8,8 +8,12 @@ const FALLBACK: u64 = 4 << 30;
 
 /// The default of `--max-memory`, in bytes.
 pub fn default_limit() -> u64 {
-    let limits = [machine(), control_group(Path::new("/sys/fs/cgroup")), slurm(&|name| std::env::var(name).ok())];
-    limits.into_iter().flatten().min().unwrap_or(FALLBACK) / 4 * 3
+    limit([machine(), control_group(Path::new("/sys/fs/cgroup")), slurm(&|name| std::env::var(name).ok())])
+}
+
+/// Three quarters of the least of what is known.
+fn limit(known: [Option<u64>; 3]) -> u64 {
+    known.into_iter().flatten().min().unwrap_or(FALLBACK) / 4 * 3
 }
 
 fn machine() -> Option<u64> {
@@ -67,6 +71,7 @@ mod tests {
         };
         assert_eq!(slurm(&cpu), Some(4 << 30));
         assert_eq!(slurm(&|_| None), None);
-        assert!(default_limit() > 0);
+        assert_eq!(limit([Some(8 << 30), None, Some(4 << 30)]), 3 << 30);
+        assert_eq!(limit([None; 3]), FALLBACK / 4 * 3);
     }
 }

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use rand::RngExt;
 
-use super::args::{Origin, PlateSpace, Seeds, StrikeArgs};
+use super::args::{PlateOrigin, PlateSpace, Seeds, StrikeArgs};
 use super::console::Console;
 use super::error::Failure;
 use super::jobs::find_scene;
@@ -59,7 +59,7 @@ pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
         for &seed in &seeds {
             let begun = Instant::now();
             let what = args.track.as_ref().map_or("--to".to_owned(), |track| format!("a place in {}", track.display()));
-            let to = |place: &Place| place.resolve(plate.frame(), args.origin == Origin::BottomLeft, &what);
+            let to = |place: &Place| place.resolve(plate.frame(), args.origin == PlateOrigin::BottomLeft, &what);
             let targets: Vec<[f64; 2]> = args.to.iter().map(to).collect::<Result<_, _>>()?;
             // Where the target is tracked the whole stroke goes with it, from where it is when it strikes.
             let place = |frame: f64| track.as_ref().map(|track: &Table<Place>| track.at(frame, between));
@@ -71,7 +71,7 @@ pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
                 (Some(frame), Some(track)) => {
                     // It may leave the picture.
                     let now = track.at(f64::from(frame), between);
-                    let now = now.fractions(plate.frame(), args.origin == Origin::BottomLeft);
+                    let now = now.fractions(plate.frame(), args.origin == PlateOrigin::BottomLeft);
                     [now[0] - targets[0][0], now[1] - targets[0][1]]
                 }
                 _ => [0.0; 2],
@@ -232,13 +232,13 @@ fn load(
     }
     let horizon = args.horizon.as_ref().map(|y| {
         let place = parse_place(&format!("0,{y}")).map_err(Failure::Usage)?;
-        place.resolve(plate.frame(), args.origin == Origin::BottomLeft, "--horizon").map(|[_, y]| y * extent[1])
+        place.resolve(plate.frame(), args.origin == PlateOrigin::BottomLeft, "--horizon").map(|[_, y]| y * extent[1])
     });
     let horizon = horizon.transpose()?;
     let low = horizon.unwrap_or(view.frame.horizon);
     if let Some(under) = targets.iter().find(|target| target[1] * extent[1] < low - 1e-9) {
         // As they were typed.
-        let told = |up: f64| 100.0 * if args.origin == Origin::BottomLeft { up } else { 1.0 - up };
+        let told = |up: f64| 100.0 * if args.origin == PlateOrigin::BottomLeft { up } else { 1.0 - up };
         return Err(Failure::Usage(format!(
             "--to lies below the horizon, where strokes end: it is at {:.0} % of the height, the horizon at {:.0} %",
             told(under[1]),
@@ -257,7 +257,7 @@ fn load(
             })
             .collect()
     } else {
-        let resolve = |place: &Place| place.resolve(plate.frame(), args.origin == Origin::BottomLeft, "--from");
+        let resolve = |place: &Place| place.resolve(plate.frame(), args.origin == PlateOrigin::BottomLeft, "--from");
         args.from.iter().map(resolve).collect::<Result<_, _>>()?
     };
     let points = |places: &[[f64; 2]]| {

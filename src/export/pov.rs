@@ -4,7 +4,7 @@
 use std::io::{self, Write};
 
 use super::pov_body::{write_body, write_mesh};
-use super::pov_values::{Values, values};
+use super::pov_values::{PovValues, values};
 use super::{Origin, TemplateError, Templates};
 use crate::model::{Body, Digits, Model, Sky};
 use crate::raster::Panorama;
@@ -16,7 +16,7 @@ const MESH_DIGITS: u32 = 7;
 pub struct Pov<'a> {
     model: &'a Model,
     templates: &'a Templates,
-    values: Values,
+    values: PovValues,
 }
 
 impl<'a> Pov<'a> {

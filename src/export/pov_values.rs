@@ -18,7 +18,7 @@ const DOME: u32 = 96;
 
 /// What the templates may ask for.
 #[derive(Serialize)]
-pub(super) struct Values {
+pub(super) struct PovValues {
     version: &'static str,
     pub stem: String,
     pub prefix: String,
@@ -130,14 +130,14 @@ fn mesh_mark(i: usize) -> String {
 }
 
 /// The values of `model`, whose files and declarations are called `name`.
-pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin) -> Values {
+pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin) -> PovValues {
     let prefix = identifier(name);
     let bounds = model.bounds();
     let extent = if bounds.is_empty() { 1.0 } else { bounds.size().max_element() };
     let digits = Digits::for_size(extent);
     let point = |p: DVec3| vector(to_pov(p), digits);
     let dome = Dome::new(model).lights(DOME).into_iter();
-    Values {
+    PovValues {
         version: env!("CARGO_PKG_VERSION"),
         stem: plain(name),
         title: plain(&model.title),

@@ -6,7 +6,7 @@ use super::decimal::plain_number as number;
 use super::rib_body::write_object;
 use super::rib_options::RibOptions;
 use super::rib_text::{PLAIN, colour};
-use super::rib_values::{Values, has_casters, values};
+use super::rib_values::{RibValues, has_casters, values};
 use super::{Origin, TemplateError, Templates};
 use crate::math::Colour;
 use crate::model::{Material, Model, Object};
@@ -16,7 +16,7 @@ pub struct Rib<'a> {
     model: &'a Model,
     templates: &'a Templates,
     options: RibOptions,
-    values: Values,
+    values: RibValues,
 }
 
 impl<'a> Rib<'a> {

@@ -17,7 +17,7 @@ const MAP: u32 = 2048;
 
 /// What the template may ask for.
 #[derive(Serialize)]
-pub(super) struct Values {
+pub(super) struct RibValues {
     version: &'static str,
     stem: String,
     title: String,
@@ -65,7 +65,7 @@ struct MapValues {
 }
 
 /// The values of `model`, whose files are called `name`.
-pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin, options: RibOptions) -> Values {
+pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin, options: RibOptions) -> RibValues {
     let bounds = model.bounds();
     let extent = if bounds.is_empty() { 1.0 } else { bounds.size().max_element() };
     let digits = Digits::for_size(extent);
@@ -78,7 +78,7 @@ pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin,
         lights.push(values);
         maps.extend(map);
     }
-    Values {
+    RibValues {
         version: env!("CARGO_PKG_VERSION"),
         title: plain(&model.title),
         command: plain(&origin.command),

@@ -277,19 +277,19 @@ impl ShapeSpec {
     /// # Errors
     /// [`ShapeError`]: unknown or circular names, sizes that are not positive, files without outlines or closed meshes.
     pub fn resolve(&self, named: &BTreeMap<String, Self>, files: &dyn ShapeFiles) -> Result<Shape, ShapeError> {
-        Lookup { named, files, pending: Vec::new() }.shape(self)
+        ShapeLookup { named, files, pending: Vec::new() }.shape(self)
     }
 }
 
 /// The resolution of a shape.
-struct Lookup<'a> {
+struct ShapeLookup<'a> {
     named: &'a BTreeMap<String, ShapeSpec>,
     files: &'a dyn ShapeFiles,
     /// The names whose resolution has begun, to detect circles.
     pending: Vec<String>,
 }
 
-impl Lookup<'_> {
+impl ShapeLookup<'_> {
     fn shape(&mut self, spec: &ShapeSpec) -> Result<Shape, ShapeError> {
         let solid = match spec {
             ShapeSpec::Inline(solid) => solid,

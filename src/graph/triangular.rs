@@ -1,6 +1,7 @@
 //! Triangular lattices: in the plane every node has six neighbours at equal distance, so that paths favour no axis as they do on
 //! square ones.
 
+use rustc_hash::FxHashSet;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -23,24 +24,34 @@ pub(super) const REACH: f64 = 1.01;
 /// More nodes are refused.
 const MOST: f64 = 1e8;
 
-/// The nodes of the triangular lattice with this spacing, through the origin, that lie in `region` in the plane; row by row.
+/// The nodes of the triangular lattice with this spacing, through the origin, that lie in `region` in the plane, row by row;
+/// those at `fixed` come first, each in place of the lattice's nearest.
 ///
 /// # Errors
 /// [`ScatterError`].
-pub(super) fn triangular(region: &dyn Region, spacing: f64) -> Result<Vec<DVec3>, ScatterError> {
+pub(super) fn triangular(region: &dyn Region, spacing: f64, fixed: &[DVec3]) -> Result<Vec<DVec3>, ScatterError> {
     let [low, high] = region.bounds();
     let estimate = scatter_estimate([low, high], spacing, true);
     if estimate.is_nan() || estimate > MOST {
         return Err(ScatterError::TooMany(estimate));
     }
-    let rows = |y: f64| libm::floor(y / (spacing * ROW)) as i64;
+    let row_of = |y: f64| y / (spacing * ROW);
+    let shift = |row: i64| if row.rem_euclid(2) == 0 { 0.0 } else { 0.5 };
+    let column_of = |x: f64, row: i64| x / spacing - shift(row);
+    let place =
+        |column: i64, row: i64| DVec3::new((column as f64 + shift(row)) * spacing, row as f64 * spacing * ROW, 0.0);
     let mut nodes = Vec::new();
-    for row in rows(low.y)..=rows(high.y) + 1 {
-        let shift = if row.rem_euclid(2) == 0 { 0.0 } else { 0.5 };
-        let columns = |x: f64| libm::floor(x / spacing - shift) as i64;
-        for column in columns(low.x)..=columns(high.x) + 1 {
-            let p = DVec3::new((column as f64 + shift) * spacing, row as f64 * spacing * ROW, 0.0);
-            if region.margin(p) <= 0.0 {
+    let mut taken: FxHashSet<[i64; 2]> = FxHashSet::default();
+    for &p in fixed {
+        let row = libm::round(row_of(p.y)) as i64;
+        if taken.insert([libm::round(column_of(p.x, row)) as i64, row]) {
+            nodes.push(p);
+        }
+    }
+    for row in libm::floor(row_of(low.y)) as i64..=libm::ceil(row_of(high.y)) as i64 {
+        for column in libm::floor(column_of(low.x, row)) as i64..=libm::ceil(column_of(high.x, row)) as i64 {
+            let p = place(column, row);
+            if region.margin(p) <= 0.0 && !taken.contains(&[column, row]) {
                 nodes.push(p);
             }
         }
@@ -80,5 +91,14 @@ mod tests {
                 assert!(ends.iter().all(|&end| (graph.position(end).distance(p) - 0.5).abs() < 1e-12));
             }
         }
+    }
+
+    /// A repeated step grows from node 0.
+    #[test]
+    fn what_is_fixed_comes_first() {
+        let fixed = [DVec3::new(3.1, 4.2, 0.0), DVec3::new(3.12, 4.21, 0.0), DVec3::new(7.0, 7.0, 0.0)];
+        let nodes = triangular(&Square, 0.5, &fixed).unwrap();
+        assert_eq!(nodes[..2], [fixed[0], fixed[2]], "of two about one node the first");
+        assert_eq!(nodes.len(), triangular(&Square, 0.5, &[]).unwrap().len());
     }
 }

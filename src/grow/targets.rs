@@ -9,7 +9,7 @@ use crate::math::DVec3;
 
 /// An endpoint on its way.
 #[derive(Clone, Copy)]
-pub(super) struct Target<'a> {
+pub(super) struct Endpoint<'a> {
     /// Its node.
     pub node: Node,
     /// Where exactly it is meant, where that is told.
@@ -31,7 +31,7 @@ pub(super) fn targets<'a>(
     step: &'a Step,
     site: &mut dyn Site,
     context: &Context<'_>,
-) -> Result<(Vec<Target<'a>>, Vec<Leg<'a>>), GrowError> {
+) -> Result<(Vec<Endpoint<'a>>, Vec<Leg<'a>>), GrowError> {
     let mut targets = Vec::new();
     let mut legs = Vec::new();
     for set in &step.endpoints {
@@ -47,7 +47,7 @@ pub(super) fn targets<'a>(
         let chosen = match &set.placement {
             Placement::At(points) => {
                 let placed = at(site, points)?;
-                targets.extend(placed.into_iter().map(|(node, p)| Target { node, at: Some(p), set }));
+                targets.extend(placed.into_iter().map(|(node, p)| Endpoint { node, at: Some(p), set }));
                 continue;
             }
             Placement::Through(lists) => {
@@ -59,7 +59,7 @@ pub(super) fn targets<'a>(
             Placement::Random(random) => site.choose(random, context.seed).map_err(wrong)?,
             Placement::Near(near) => site.choose_near(near, context).map_err(wrong)?,
         };
-        targets.extend(chosen.into_iter().map(|node| Target { node, at: None, set }));
+        targets.extend(chosen.into_iter().map(|node| Endpoint { node, at: None, set }));
     }
     Ok((targets, legs))
 }

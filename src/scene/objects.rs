@@ -105,10 +105,10 @@ impl Resolver<'_> {
 
     /// A skin, and what is on it, fit what the object is made of.
     fn skin(&mut self, place: &str, spec: &ObjectSpec, is_flat: bool) {
-        if is_flat && (spec.skin == Skin::Mesh || !spec.leaves.is_empty()) {
+        if is_flat && (spec.skin.is_mesh() || !spec.leaves.is_empty()) {
             self.wrong(place, "leaves and the skin `mesh` are for scenes in space".to_owned());
         }
-        if matches!(spec.skin, Skin::Mesh | Skin::Isosurface(_)) && !spec.level_materials.is_empty() {
+        if !spec.skin.has_levels() && !spec.level_materials.is_empty() {
             let message = "this skin makes all levels one: it has one material".to_owned();
             self.wrong(&format!("{place}.level_materials"), message);
         }

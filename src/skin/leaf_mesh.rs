@@ -10,7 +10,7 @@ const BALL: [u32; 2] = [6, 10];
 
 /// Why an outline is no leaf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum OutlineError {
+pub enum LeafError {
     /// There is nothing.
     #[error("the outline has no points")]
     NoPoints,
@@ -26,12 +26,12 @@ pub enum OutlineError {
 /// `fold` radians.
 ///
 /// # Errors
-/// [`OutlineError`].
-pub fn leaf_mesh(outline: &[DVec2], fold: f64) -> Result<Mesh, OutlineError> {
-    let foot = outline.iter().copied().reduce(|a, b| if b.y < a.y { b } else { a }).ok_or(OutlineError::NoPoints)?;
+/// [`LeafError`].
+pub fn leaf_mesh(outline: &[DVec2], fold: f64) -> Result<Mesh, LeafError> {
+    let foot = outline.iter().copied().reduce(|a, b| if b.y < a.y { b } else { a }).ok_or(LeafError::NoPoints)?;
     let top = outline.iter().map(|p| p.y - foot.y).fold(0.0, f64::max);
     if top <= 0.0 {
-        return Err(OutlineError::NoHeight);
+        return Err(LeafError::NoHeight);
     }
     let mut points: Vec<DVec2> = outline.iter().map(|&p| (p - foot) / top).collect();
     points.dedup_by(|a, b| a.distance(*b) < 1e-6);
@@ -59,7 +59,7 @@ pub fn leaf_mesh(outline: &[DVec2], fold: f64) -> Result<Mesh, OutlineError> {
         mesh.triangles.extend(triangles.chunks_exact(3).map(|t| [first + t[0], first + t[1], first + t[2]]));
     }
     if mesh.triangles.is_empty() {
-        return Err(OutlineError::NoArea);
+        return Err(LeafError::NoArea);
     }
     Ok(mesh)
 }

@@ -15,7 +15,7 @@ mod tubes;
 
 pub use cones::{cones, spheres};
 pub use isosurface::{Distance, IsosurfaceError, IsosurfaceSpec, isosurface};
-pub use leaf_mesh::{OutlineError, ball_mesh, leaf_mesh};
+pub use leaf_mesh::{LeafError, ball_mesh, leaf_mesh};
 pub use leaves::{LeafLight, LeavesSpec};
 pub use levels::by_level;
 pub use paint::{PaintSpec, Painting, painted};

@@ -27,6 +27,26 @@ pub enum Skin {
     Surface,
 }
 
+impl Skin {
+    /// Are limbs and leaves triangles of one mesh each?
+    #[must_use]
+    pub fn is_mesh(&self) -> bool {
+        match self {
+            Self::Mesh => true,
+            Self::Spheres | Self::Cones | Self::Isosurface(_) | Self::Surface => false,
+        }
+    }
+
+    /// Are levels of growth bodies of their own?
+    #[must_use]
+    pub fn has_levels(&self) -> bool {
+        match self {
+            Self::Spheres | Self::Cones | Self::Surface => true,
+            Self::Mesh | Self::Isosurface(_) => false,
+        }
+    }
+}
+
 /// A closed surface as a mesh from `foot`, with smooth normals; in a flat scene its filled area.
 #[must_use]
 pub fn surface_mesh(surface: &Surface, foot: DVec3, is_flat: bool) -> Mesh {

@@ -15,9 +15,9 @@ pub struct World<'a> {
     pub model: &'a Model,
     /// The light of the sky.
     pub dome: Dome,
-    shapes: Vec<Shape<'a>>,
+    shapes: Vec<ObjectShape<'a>>,
     /// Object and place of each box.
-    instances: Vec<(u32, Place)>,
+    instances: Vec<(u32, Standing)>,
     boxes: Boxes,
     /// The first number of each object's branches among all.
     branches: Vec<u32>,
@@ -26,7 +26,7 @@ pub struct World<'a> {
 }
 
 /// An object in its own space.
-enum Shape<'a> {
+enum ObjectShape<'a> {
     Limbs(LimbShape<'a>),
     Mesh(&'a Mesh, Triangles),
 }
@@ -53,14 +53,14 @@ struct Laid {
 
 /// Where an object, or one posed mesh of it, is in the world.
 #[derive(Clone, Copy)]
-enum Place {
+enum Standing {
     /// As an instance.
     Whole(Instance),
     /// By a matrix: where its origin is, the axes, and their inverse.
     Posed(DVec3, DMat3, DMat3),
 }
 
-impl Place {
+impl Standing {
     fn posed(instance: &Instance, pose: &Pose) -> Self {
         let axes = [pose.axes.x_axis, pose.axes.y_axis, pose.axes.z_axis];
         let [x, y, z] = axes.map(|axis| instance.turned(axis * instance.scale));
@@ -167,7 +167,7 @@ impl<'a> LimbShape<'a> {
     }
 }
 
-impl<'a> Shape<'a> {
+impl<'a> ObjectShape<'a> {
     fn new(object: &'a Object, model: &Model) -> Self {
         match &object.body {
             Body::Limbs(limbs) => {
@@ -219,15 +219,15 @@ impl<'a> World<'a> {
     /// Puts `model` into trees.
     #[must_use]
     pub fn new(model: &'a Model) -> Self {
-        let shapes: Vec<Shape<'_>> = model.objects.iter().map(|object| Shape::new(object, model)).collect();
-        let mut instances: Vec<(u32, Place)> = Vec::new();
+        let shapes: Vec<ObjectShape<'_>> = model.objects.iter().map(|object| ObjectShape::new(object, model)).collect();
+        let mut instances: Vec<(u32, Standing)> = Vec::new();
         for (i, object) in (0..).zip(&model.objects) {
             for instance in &object.instances {
                 match &object.body {
                     Body::Posed(_, poses) => {
-                        instances.extend(poses.iter().map(|pose| (i, Place::posed(instance, pose))));
+                        instances.extend(poses.iter().map(|pose| (i, Standing::posed(instance, pose))));
                     }
-                    Body::Limbs(_) | Body::Mesh(_) => instances.push((i, Place::Whole(*instance))),
+                    Body::Limbs(_) | Body::Mesh(_) => instances.push((i, Standing::Whole(*instance))),
                 }
             }
         }
@@ -268,7 +268,7 @@ impl<'a> World<'a> {
     pub(super) fn within(&self, p: DVec3) -> Vec<Within> {
         let mut found = Vec::new();
         for (instance, (object, place)) in (0..).zip(&self.instances) {
-            let (Shape::Limbs(shape), own) = (&self.shapes[*object as usize], place.to_own(p)) else { continue };
+            let (ObjectShape::Limbs(shape), own) = (&self.shapes[*object as usize], place.to_own(p)) else { continue };
             let bounds = shape.cones.bounds();
             if own.cmpge(bounds.min).all() && own.cmple(bounds.max).all() {
                 let holds = |id: &u32| shape.cone(*id).0.holds(own);
@@ -297,7 +297,7 @@ impl<'a> World<'a> {
         let mut surface = best.map_or(ground, |(instance, t, id)| Some(self.surface(&ray, instance, t, id)));
         for w in within {
             let (object, place) = &self.instances[w.instance as usize];
-            let Shape::Limbs(shape) = &self.shapes[*object as usize] else { continue };
+            let ObjectShape::Limbs(shape) = &self.shapes[*object as usize] else { continue };
             let (cone, balls) = shape.cone(w.id);
             let (own, scale) = place.ray(&ray);
             if let Some(entry) = cone.inner(&own)
@@ -314,8 +314,8 @@ impl<'a> World<'a> {
     fn surface(&self, ray: &Ray, instance: u32, t: f64, id: u32) -> SurfaceHit {
         let (object, place) = &self.instances[instance as usize];
         match &self.shapes[*object as usize] {
-            Shape::Mesh(mesh, _) => self.on_mesh(ray, instance, t, id, mesh),
-            Shape::Limbs(shape) => {
+            ObjectShape::Mesh(mesh, _) => self.on_mesh(ray, instance, t, id, mesh),
+            ObjectShape::Limbs(shape) => {
                 let (own, _) = place.ray(ray);
                 let (cone, balls) = shape.cone(id);
                 self.on_cone(ray, instance, t, cone.enter(&own), shape, (&cone, balls))

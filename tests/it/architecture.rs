@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use crate::house::graph::{Edges, circles, edges, report, told};
+use crate::house::graph::{Edges, circles, edges, report};
 use crate::house::modules::House;
 use crate::support::{files_below, root, scene_names, succeed_in};
 
@@ -71,13 +71,11 @@ fn stages_import_only_earlier_ones() {
     }
 }
 
-/// `cargo test --test it circles -- --nocapture` prints every circle and long function.
 #[test]
 fn files_do_not_use_each_other_in_circles() {
     let (house, edges) = house();
-    println!("{}", report(&house));
     let circles = circles(house.files.len(), &edges);
-    assert!(circles.is_empty(), "a circle:\n{}", told(&house, &edges, &circles[0]));
+    assert!(circles.is_empty(), "{}", report(&house));
 }
 
 #[test]

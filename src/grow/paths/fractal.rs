@@ -122,7 +122,7 @@ fn grow_on<const N: usize>(
 ) -> Result<Grown, GrowError> {
     let mut site = OnLattice::<N>::new(step, space, context)?;
     let starts = starts(step, &mut site, context)?;
-    let mut growth = Growth::new(fractal, step, &site.lattice, &starts)?;
+    let mut growth = FractalGrowth::new(fractal, step, &site.lattice, &starts)?;
     let settled = growth.iterate(&starts, context)?;
     let skeleton = refined(step, growth.skeleton, space, context)?;
     let [nodes, edges] = site.size();
@@ -130,7 +130,7 @@ fn grow_on<const N: usize>(
 }
 
 /// Fractal placement on its way; iterations are levels of the skeleton.
-struct Growth<'a, const N: usize> {
+struct FractalGrowth<'a, const N: usize> {
     fractal: &'a FractalSpec,
     step: &'a Step,
     lattice: &'a Lattice<N>,
@@ -144,7 +144,7 @@ struct Growth<'a, const N: usize> {
     fresh: Vec<Node>,
 }
 
-impl<'a, const N: usize> Growth<'a, N> {
+impl<'a, const N: usize> FractalGrowth<'a, N> {
     fn new(
         fractal: &'a FractalSpec,
         step: &'a Step,

@@ -14,7 +14,7 @@ use crate::grow::space::Space;
 use crate::grow::spaces::{OnScatter, on_lattice};
 use crate::grow::starts::{delayed, starts};
 use crate::grow::step::{Context, Method, Step, Unreached};
-use crate::grow::targets::{Leg, Target, targets};
+use crate::grow::targets::{Endpoint, Leg, targets};
 use crate::math::DVec3;
 use crate::skeleton::Skeleton;
 
@@ -67,7 +67,7 @@ impl Method for Paths {
 }
 
 /// Paths on their way into a skeleton.
-struct Growing<'a> {
+struct PathUnion<'a> {
     step: &'a Step,
     site: &'a dyn PathSite,
     /// Where nodes are that were told exactly.
@@ -78,7 +78,7 @@ struct Growing<'a> {
     dropped: usize,
 }
 
-impl Growing<'_> {
+impl PathUnion<'_> {
     /// Adds the path to `end`, whose generator starts with the cost `before`; false where there is none and that is allowed.
     fn add(&mut self, tree: &dyn PathTree, end: Node, class: u16, before: f64, set: &str) -> Result<bool, GrowError> {
         if !tree.is_reached(end) {
@@ -136,7 +136,7 @@ fn grow(step: &Step, site: &mut dyn PathSite, context: &Context<'_>) -> Result<(
     let told = targets.iter().filter_map(|target| Some((target.node, target.at?)));
     let stops = legs.iter().flat_map(|leg| leg.stops.iter().copied());
     let told = told.chain(stops).chain(starts.iter().filter_map(|&(node, at)| Some((node, at?))));
-    let mut growing = Growing {
+    let mut growing = PathUnion {
         step,
         site,
         exact: told.collect(),
@@ -155,7 +155,7 @@ fn grow(step: &Step, site: &mut dyn PathSite, context: &Context<'_>) -> Result<(
         let plan = site.plan(&generators, (!everywhere).then_some(&nodes[..]), context.progress);
         let tree = plan.map_err(|error| step.plan_error(error))?;
         growing.settled += tree.settled();
-        for &Target { node, set, .. } in &targets {
+        for &Endpoint { node, set, .. } in &targets {
             growing.add(tree.as_ref(), node, set.class, 0.0, &set.name)?;
         }
         if !context.show.is_empty() {
@@ -166,6 +166,6 @@ fn grow(step: &Step, site: &mut dyn PathSite, context: &Context<'_>) -> Result<(
         }
     }
     let [nodes, edges] = site.size();
-    let Growing { skeleton, settled, dropped, .. } = growing;
+    let PathUnion { skeleton, settled, dropped, .. } = growing;
     Ok((Grown { nodes, edges, settled, dropped, marks, ..Grown::default() }, skeleton))
 }

@@ -168,7 +168,7 @@ impl Reader {
         }
         self.step(1);
         let begun = self.at;
-        while !self.ended() && !(self.peek(0) == '"' && (1..=hashes).all(|i| self.peek(i) == '#')) {
+        while !(self.ended() || self.peek(0) == '"' && (1..=hashes).all(|i| self.peek(i) == '#')) {
             self.step(1);
         }
         let text = self.chars[begun..self.at].iter().collect();
