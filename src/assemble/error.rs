@@ -21,6 +21,9 @@ pub enum AssembleError {
         /// What is wrong and what would be right.
         problem: ObjectProblem,
     },
+    /// An object names a step or a material by an index that none has.
+    #[error("object `{0}`: there is no step or no material with an index that it gives")]
+    Index(String),
     /// There is no view.
     #[error(transparent)]
     Camera(CameraError),

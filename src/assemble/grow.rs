@@ -23,6 +23,7 @@ pub fn grow(
     max_memory: u64,
     progress: &Progress,
 ) -> Result<Vec<Grown>, AssembleError> {
+    recipe.check()?;
     within(bytes_needed(recipe), max_memory)?;
     let grown = recipe.steps.iter().map(|_| None).collect();
     let mut scene = Schedule { recipe, show, max_memory, progress, grown, repeated: BTreeMap::new() };

@@ -18,6 +18,7 @@ const GROUND_REACH: f64 = 2.5;
 /// # Errors
 /// [`AssembleError`] where an object cannot be shown, the camera is wrong, or on cancelling.
 pub fn model(recipe: &Recipe, grown: &[Grown], size: [u32; 2], progress: &Progress) -> Result<Model, AssembleError> {
+    recipe.check()?;
     let aspect = f64::from(size[0]) / f64::from(size[1]);
     // The camera is set when it is known what there is to see.
     let mut model = Model {

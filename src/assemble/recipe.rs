@@ -5,7 +5,8 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::grow::Step;
+use super::AssembleError;
+use crate::grow::{GrowError, Key, Problem, Step, waits_for_itself};
 use crate::math::{Colour, DVec3, Degrees};
 use crate::model::{CameraSpec, GlowSpec, GroundSpec, Instance, Light, Material, Mesh, Sky, ViewFrame};
 use crate::raster::{Grey, Plate};
@@ -85,6 +86,29 @@ impl Default for Recipe {
 }
 
 impl Recipe {
+    /// Refuses indices of what is not there, and steps that wait for themselves.
+    pub(super) fn check(&self) -> Result<(), AssembleError> {
+        let wrong = |step: &Step, problem| GrowError::Step { step: step.name.clone(), key: Key::From, problem };
+        for step in &self.steps {
+            if let Some(index) = step.after().find(|&index| index >= self.steps.len()) {
+                return Err(wrong(step, Problem::NoStep(index)).into());
+            }
+        }
+        if let Some(stuck) = waits_for_itself(&self.steps) {
+            return Err(wrong(&self.steps[stuck], Problem::WaitsForItself).into());
+        }
+        for object in &self.objects {
+            let leaves = object.leaves.iter().map(|leaves| leaves.material);
+            let mut materials = object.level_materials.iter().copied().chain(leaves).chain([object.material]);
+            if object.steps.iter().any(|&step| step >= self.steps.len())
+                || materials.any(|material| material >= self.materials.len())
+            {
+                return Err(AssembleError::Index(object.name.clone()));
+            }
+        }
+        Ok(())
+    }
+
     /// The material of limbs that have no other.
     #[must_use]
     pub fn bark() -> Material {

@@ -9,7 +9,7 @@ use super::jobs::{Job, Jobs};
 use super::render::check_name;
 use super::write::{Written, note_patterns, read_templates, write_pov, write_rib};
 use crate::export::{Pov, Rib, RibOptions, RibShadows, SvgOptions, Templates, write_obj, write_ply, write_svg};
-use crate::files::write_whole;
+use crate::files::write_atomic;
 use crate::geom::MarkKind;
 use crate::model::{Model, Object};
 use crate::scene::Loaded;
@@ -75,7 +75,7 @@ fn write(
 ) -> Result<Vec<PathBuf>, Failure> {
     match args.to {
         Format::Svg => {
-            write_whole(target.first, |out| write_svg(model, SvgOptions { size: scene.recipe.size }, out))
+            write_atomic(target.first, |out| write_svg(model, SvgOptions { size: scene.recipe.size }, out))
                 .map_err(|e| Failure::file("write", target.first, &e))?;
             Ok(vec![target.first.to_owned()])
         }
@@ -85,7 +85,7 @@ fn write(
                 _ => Failure::file("write", target.first, &e),
             };
             let obj = args.to == Format::Obj;
-            write_whole(target.first, |out| if obj { write_obj(model, out) } else { write_ply(model, out) })
+            write_atomic(target.first, |out| if obj { write_obj(model, out) } else { write_ply(model, out) })
                 .map_err(wrong)?;
             Ok(vec![target.first.to_owned()])
         }

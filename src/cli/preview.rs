@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::args::{Look, RenderArgs, Renderer};
 use super::error::Failure;
-use crate::files::{Rgba, encode_png, write_whole};
+use crate::files::{Rgba, encode_png, write_atomic};
 use crate::glow::ShineError;
 use crate::math::Progress;
 use crate::model::{Model, Stroke};
@@ -101,17 +101,17 @@ pub fn write_shone(
         if split {
             return Err(Failure::Usage("--split writes OpenEXR: end the picture in .exr".to_owned()));
         }
-        write_whole(path, |out| shone.write_png(depth, texts, out)).map_err(|e| Failure::file("write", path, &e))?;
+        write_atomic(path, |out| shone.write_png(depth, texts, out)).map_err(|e| Failure::file("write", path, &e))?;
         return Ok(vec![path.to_owned()]);
     }
     if !split {
-        write_whole(path, |out| shone.write_exr(texts, out)).map_err(|e| Failure::file("write", path, &e))?;
+        write_atomic(path, |out| shone.write_exr(texts, out)).map_err(|e| Failure::file("write", path, &e))?;
         return Ok(vec![path.to_owned()]);
     }
     let mut files = Vec::new();
     for pass in shone.passes() {
         let file = path.with_extension(format!("{}.exr", pass.name()));
-        write_whole(&file, |out| shone.write_pass(pass, texts, out)).map_err(|e| Failure::file("write", &file, &e))?;
+        write_atomic(&file, |out| shone.write_pass(pass, texts, out)).map_err(|e| Failure::file("write", &file, &e))?;
         files.push(file);
     }
     Ok(files)
@@ -146,7 +146,7 @@ impl Drawn {
         if let Self::Shone(shone) = self {
             return write_shone(shone, path, depth(&args.bits), false, &texts).map(drop);
         }
-        write_whole(path, |out| match self {
+        write_atomic(path, |out| match self {
             Self::Traced(traced) if is_exr(path) => traced.write_exr(&texts, out),
             Self::Screen(_) if is_exr(path) => {
                 Err(io::Error::other("only the built-in preview writes OpenEXR: leave out --with, or end it in .png"))

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::error::Failure;
-use crate::files::{Rgba, draw_svg, encode_png, resize, write_whole};
+use crate::files::{Rgba, draw_svg, encode_png, resize, write_atomic};
 
 /// A picture and what tells it from the others.
 pub struct Tile {
@@ -37,7 +37,7 @@ pub fn write_sheet(path: &Path, tiles: &[Tile]) -> Result<(), Failure> {
         sheet.paste(&label(&tile.label, width)?, x, y + height);
     }
     let texts = [("Software", concat!("lichtenberg ", env!("CARGO_PKG_VERSION")))];
-    write_whole(path, |out| encode_png(&sheet, &texts, out)).map_err(|e| Failure::file("write", path, &e))
+    write_atomic(path, |out| encode_png(&sheet, &texts, out)).map_err(|e| Failure::file("write", path, &e))
 }
 
 /// A line of text, centred and made to fit.

@@ -9,7 +9,7 @@ use flate2::{Compression, GzBuilder};
 use super::console::Console;
 use super::error::Failure;
 use crate::export::{Pov, Rib, Templates};
-use crate::files::{encode_exr, is_edited, seal, write_bytes, write_whole};
+use crate::files::{encode_exr, is_edited, seal, write_atomic, write_bytes};
 
 /// The templates, those in `folder` in place of the program's own.
 pub fn read_templates(folder: Option<&Path>) -> Result<Templates, Failure> {
@@ -54,11 +54,11 @@ pub fn write_pov(pov: &Pov<'_>, folder: &Path, name: &str, force: bool) -> Resul
     for (path, comment, text) in texts {
         filled.push((seal(comment, &text.map_err(|e| failure(&path, e))?), path));
     }
-    write_whole(&inc, |out| pov.write_inc(out)).map_err(|e| failure(&inc, e))?;
+    write_atomic(&inc, |out| pov.write_inc(out)).map_err(|e| failure(&inc, e))?;
     let mut written = Written { files: vec![inc], kept: Vec::new() };
     if let Some((sky, strength)) = pov.sky() {
         let path = folder.join(format!("{name}-sky.exr"));
-        write_whole(&path, |out| {
+        write_atomic(&path, |out| {
             let mut bytes = std::io::Cursor::new(Vec::new());
             encode_exr(&sky.layers(strength), &mut bytes)?;
             out.write_all(bytes.get_ref())
@@ -81,7 +81,7 @@ pub fn write_rib(rib: &Rib<'_>, folder: &Path, name: &str, gzip: bool, force: bo
     let casters = rib.has_casters().then(|| (folder.join(format!("{name}.casters.rib")), true));
     for (path, is_casters) in std::iter::once((archive, false)).chain(casters) {
         let write = |out: &mut dyn Write| if is_casters { rib.write_casters(out) } else { rib.write_archive(out) };
-        write_whole(&path, |out| {
+        write_atomic(&path, |out| {
             if !gzip {
                 return write(out);
             }

@@ -8,7 +8,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// Those of `write` and of the file system; `path` is then unchanged.
-pub fn write_whole(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> io::Result<()> {
+pub fn write_atomic(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> io::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::create_dir_all(folder)?;
     let mut builder = tempfile::Builder::new();
@@ -28,12 +28,12 @@ pub fn write_whole(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io:
     Ok(())
 }
 
-/// [`write_whole`] of `bytes`.
+/// [`write_atomic`] of `bytes`.
 ///
 /// # Errors
-/// As [`write_whole`].
+/// As [`write_atomic`].
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    write_whole(path, |out| out.write_all(bytes))
+    write_atomic(path, |out| out.write_all(bytes))
 }
 
 #[cfg(test)]
@@ -45,7 +45,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a/b.txt");
         write_bytes(&path, b"old").unwrap();
-        let failed = write_whole(&path, |out| {
+        let failed = write_atomic(&path, |out| {
             out.write_all(b"half of the n")?;
             Err(io::Error::other("disk full"))
         });

@@ -14,7 +14,7 @@ mod shape_files;
 mod sketch;
 
 pub use self::exr::{ExrError, ExrHead, PanoramaError, decode_exr, decode_panorama, encode_exr, encode_exr_rows};
-pub use atomic_write::{write_bytes, write_whole};
+pub use atomic_write::{write_atomic, write_bytes};
 pub use checksum::{is_edited, seal};
 pub use cryptomatte::add_mattes;
 pub use folder::{FileRead, Folder, Reads, embedded_scenes, leaf_names};

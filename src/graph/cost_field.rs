@@ -54,7 +54,7 @@ pub enum Measure {
         /// Coordinate where it is 0.
         cheap: f64,
         /// Coordinate where it is 1.
-        dear: f64,
+        costly: f64,
     },
     /// Distance from a shape; 0 inside.
     Shape(Shape),
@@ -111,7 +111,7 @@ impl CostField {
                 (d - *along * d.dot(*along)).length()
             }
             Measure::Point(at) => (p - *at).length(),
-            Measure::Height { up, cheap, dear } => ((p[*up] - cheap) / (dear - cheap)).clamp(0.0, 1.0),
+            Measure::Height { up, cheap, costly } => ((p[*up] - cheap) / (costly - cheap)).clamp(0.0, 1.0),
             Measure::Shape(shape) => shape.distance(p).max(0.0),
             Measure::Function(FieldFunction(function)) => function(p),
             Measure::Map { picture, frame, up } => {

@@ -105,7 +105,7 @@ impl Scatter {
             return Err(ScatterError::TooMany(estimate));
         }
         let positions = if *plan.joining == Joining::Triangular {
-            triangular(region, plan.spacing, plan.fixed)?
+            triangular(region, plan.spacing, plan.fixed)
         } else {
             let cells = CellGrid::new(bounds, plan.spacing, plan.is_plane);
             poisson(region, &cells, plan.spacing, plan.fixed, stream)

@@ -5,7 +5,7 @@ use rustc_hash::FxHashSet;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Region, ScatterError, scatter_estimate};
+use super::Region;
 use crate::math::DVec3;
 
 /// A triangular lattice in the plane: six neighbours at equal distance.
@@ -21,42 +21,69 @@ pub struct TriangularSpec {
 const ROW: f64 = 0.866_025_403_784_438_6;
 /// Neighbours are within so many spacings.
 pub(super) const REACH: f64 = 1.01;
-/// More nodes are refused.
-const MOST: f64 = 1e8;
+/// Rounding, in spacings.
+const SLACK: f64 = 1e-6;
+
+/// A triangular lattice through the origin.
+struct Grid {
+    spacing: f64,
+}
+
+impl Grid {
+    fn shift(row: i64) -> f64 {
+        if row.rem_euclid(2) == 0 { 0.0 } else { 0.5 }
+    }
+
+    fn row(&self, y: f64) -> f64 {
+        y / (self.spacing * ROW)
+    }
+
+    fn column(&self, x: f64, row: i64) -> f64 {
+        x / self.spacing - Self::shift(row)
+    }
+
+    fn place(&self, [column, row]: [i64; 2]) -> DVec3 {
+        let (x, y) = ((column as f64 + Self::shift(row)) * self.spacing, row as f64 * self.spacing * ROW);
+        DVec3::new(x, y, 0.0)
+    }
+
+    /// The node that stands for `p`: the nearest one that is open, if any around it is; that at `p` itself in any case.
+    fn nearest(&self, p: DVec3, is_open: &dyn Fn(DVec3) -> bool) -> [i64; 2] {
+        let middle = libm::round(self.row(p.y)) as i64;
+        let mut around: Vec<[i64; 2]> = Vec::new();
+        for row in middle - 1..=middle + 1 {
+            let column = libm::round(self.column(p.x, row)) as i64;
+            around.extend([column - 1, column, column + 1].map(|column| [column, row]));
+        }
+        around.sort_by(|&a, &b| self.place(a).distance(p).total_cmp(&self.place(b).distance(p)).then(a.cmp(&b)));
+        let is_it = |at: &&[i64; 2]| is_open(self.place(**at)) || self.place(**at).distance(p) < self.spacing * SLACK;
+        around.iter().find(is_it).copied().unwrap_or(around[0])
+    }
+}
 
 /// The nodes of the triangular lattice with this spacing, through the origin, that lie in `region` in the plane, row by row;
-/// those at `fixed` come first, each in place of the lattice's nearest.
-///
-/// # Errors
-/// [`ScatterError`].
-pub(super) fn triangular(region: &dyn Region, spacing: f64, fixed: &[DVec3]) -> Result<Vec<DVec3>, ScatterError> {
+/// those that stand for `fixed` places come first.
+pub(super) fn triangular(region: &dyn Region, spacing: f64, fixed: &[DVec3]) -> Vec<DVec3> {
     let [low, high] = region.bounds();
-    let estimate = scatter_estimate([low, high], spacing, true);
-    if estimate.is_nan() || estimate > MOST {
-        return Err(ScatterError::TooMany(estimate));
-    }
-    let row_of = |y: f64| y / (spacing * ROW);
-    let shift = |row: i64| if row.rem_euclid(2) == 0 { 0.0 } else { 0.5 };
-    let column_of = |x: f64, row: i64| x / spacing - shift(row);
-    let place =
-        |column: i64, row: i64| DVec3::new((column as f64 + shift(row)) * spacing, row as f64 * spacing * ROW, 0.0);
+    let grid = Grid { spacing };
+    let is_open = |p: DVec3| region.margin(p) <= spacing * SLACK;
     let mut nodes = Vec::new();
     let mut taken: FxHashSet<[i64; 2]> = FxHashSet::default();
     for &p in fixed {
-        let row = libm::round(row_of(p.y)) as i64;
-        if taken.insert([libm::round(column_of(p.x, row)) as i64, row]) {
-            nodes.push(p);
+        let at = grid.nearest(p, &is_open);
+        if taken.insert(at) {
+            nodes.push(grid.place(at));
         }
     }
-    for row in libm::floor(row_of(low.y)) as i64..=libm::ceil(row_of(high.y)) as i64 {
-        for column in libm::floor(column_of(low.x, row)) as i64..=libm::ceil(column_of(high.x, row)) as i64 {
-            let p = place(column, row);
-            if region.margin(p) <= 0.0 && !taken.contains(&[column, row]) {
+    for row in libm::floor(grid.row(low.y)) as i64..=libm::ceil(grid.row(high.y)) as i64 {
+        for column in libm::floor(grid.column(low.x, row)) as i64..=libm::ceil(grid.column(high.x, row)) as i64 {
+            let p = grid.place([column, row]);
+            if is_open(p) && !taken.contains(&[column, row]) {
                 nodes.push(p);
             }
         }
     }
-    Ok(nodes)
+    nodes
 }
 
 #[cfg(test)]
@@ -93,12 +120,14 @@ mod tests {
         }
     }
 
-    /// A repeated step grows from node 0.
+    /// A repeated step grows from node 0, and a place on the border has its neighbours.
     #[test]
     fn what_is_fixed_comes_first() {
-        let fixed = [DVec3::new(3.1, 4.2, 0.0), DVec3::new(3.12, 4.21, 0.0), DVec3::new(7.0, 7.0, 0.0)];
-        let nodes = triangular(&Square, 0.5, &fixed).unwrap();
-        assert_eq!(nodes[..2], [fixed[0], fixed[2]], "of two about one node the first");
-        assert_eq!(nodes.len(), triangular(&Square, 0.5, &[]).unwrap().len());
+        let fixed = [DVec3::new(3.1, 4.2, 0.0), DVec3::new(3.12, 4.21, 0.0), DVec3::new(10.3, 7.0, 0.0)];
+        let nodes = triangular(&Square, 0.5, &fixed);
+        assert!(nodes[0].distance(fixed[0]) < 0.3 && nodes[1].distance(fixed[2]) < 0.8, "{} {}", nodes[0], nodes[1]);
+        assert!(Square.margin(nodes[1]) <= 1e-9);
+        assert_eq!(nodes.len(), triangular(&Square, 0.5, &[]).len());
+        assert_eq!(triangular(&Square, 0.5, &[DVec3::ZERO])[0], DVec3::ZERO);
     }
 }

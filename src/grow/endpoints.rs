@@ -76,6 +76,11 @@ impl Placement {
         }
     }
 
+    /// How many least-cost paths lead to them.
+    pub(super) fn paths(&self) -> usize {
+        if let Self::Through(lists) = self { lists.iter().map(Vec::len).sum() } else { self.count() }
+    }
+
     /// The shape that they lie in, if one is given.
     pub(super) fn shape(&self) -> Option<&Shape> {
         match self {

@@ -143,6 +143,26 @@ pub enum Problem {
     /// More grew than there may be.
     #[error("more than {0} nodes grow: lower `depth`, `most` or `chance`")]
     Overgrown(u64),
+    /// More grew than there may be.
+    #[error("more than {0} nodes grow: use fewer `points`, a longer `step`, or start nearer to them")]
+    Colonised(u64),
+    /// A shape too thin for points.
+    #[error("only {placed} of {count} points fit into the shape: is it thinner than its box by far?")]
+    NoPoints {
+        /// How many have a place.
+        placed: usize,
+        /// How many are asked for.
+        count: u32,
+    },
+    /// A repeated step elsewhere.
+    #[error("a repeated step needs scattered nodes")]
+    NotRepeated,
+    /// A step before it that is not there.
+    #[error("there is no step with the index {0}")]
+    NoStep(usize),
+    /// A circle of steps.
+    #[error("this step waits for itself: it grows from, or near, a step that waits for it")]
+    WaitsForItself,
     /// More is expected than there may be.
     #[error(transparent)]
     Expected(super::segments::TooMany),

@@ -47,7 +47,7 @@ impl Step {
                         let end = skeleton.paths[path].end;
                         Start {
                             at: skeleton.nodes[end as usize].position,
-                            way: skeleton.way_into(end).unwrap_or(heading),
+                            way: skeleton.direction_into(end).unwrap_or(heading),
                             last: last[path],
                             name: next_name(skeleton.paths[path].name, i),
                         }
@@ -73,7 +73,7 @@ impl Step {
                 let places = limb.nodes.windows(2).filter(|pair| is_place(skeleton.nodes[pair[0] as usize].cost));
                 let on = places.zip(0..).map(|(pair, place)| {
                     let [at, next] = [pair[0], pair[1]].map(|n| skeleton.nodes[n as usize].position);
-                    let way = skeleton.way_into(pair[0]).unwrap_or((next - at).normalize_or(DVec3::Z));
+                    let way = skeleton.direction_into(pair[0]).unwrap_or((next - at).normalize_or(DVec3::Z));
                     Start { at, way, last: DVec3::ZERO, name: branch_name(name, place, 0) }
                 });
                 limbs.push(on.collect());

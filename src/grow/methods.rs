@@ -39,7 +39,7 @@ impl MethodSpec {
             Self::Segments(segments) => Arc::new(segments::resolve(segments, step, lookup)?),
             Self::Voxels(voxels) => Arc::new(voxels::resolve(voxels, step, space, lookup)?),
             Self::Colonise(spec) => Arc::new(colonise::resolve(spec, step, lookup)?),
-            Self::Dbm(dbm) => Arc::new(*dbm),
+            Self::Dbm(dbm) => Arc::new(dbm.resolve(step, lookup)),
             Self::Dla(dla) => Arc::new(dla.resolve(space, lookup)),
         })
     }

@@ -19,14 +19,7 @@ use crate::skeleton::Width;
 pub fn resolve_step(name: &str, spec: &StepSpec, space: Option<&Space>, lookup: &mut dyn Lookup) -> Option<Step> {
     let rules = spec.by.rules();
     let is_free = rules.needs == Needs::Nothing;
-    match &spec.space {
-        Some(_) if is_free => {
-            let message = format!("{} no space: it stays `inside` a shape", rules.subject);
-            lookup.wrong("space", message);
-        }
-        None if !is_free => lookup.wrong("space", "this way of growing needs a `space`".to_owned()),
-        _ => {}
-    }
+    rules.check_given(spec, lookup);
     let source = generators(name, spec, space, lookup);
     if spec.along > 0.0 && (is_first(&spec.from) || spec.repeat.is_some()) {
         let message =
@@ -125,6 +118,9 @@ fn spread_over(step: &str, spec: &SpreadSpec, space: Option<&Space>, lookup: &mu
 /// How paths are refined, if they are: `None` where that is wrong.
 fn refine(spec: &StepSpec, space: Option<&Space>, lookup: &mut dyn Lookup) -> Option<Option<Refine>> {
     let Some(refine) = &spec.refine else { return Some(None) };
+    if spec.to.values().any(|set| set.through.is_some()) {
+        lookup.wrong("refine", "paths through given places are not refined: they would miss these".to_owned());
+    }
     let Some(lattice) = space?.lattice() else {
         let message = "paths are refined on lattices: scattered nodes take a smaller spacing".to_owned();
         lookup.wrong("refine", message);
@@ -139,13 +135,13 @@ fn is_first(from: &FromSpec) -> bool {
     matches!(from, FromSpec::At(_) | FromSpec::Inside(_) | FromSpec::Spread(_))
 }
 
-/// A step that waits for itself, if any does, by index.
+/// A step that waits for itself, if any does, by index. All steps that any waits for are there.
 #[must_use]
-pub fn waits_for_itself(steps: &[Option<Step>]) -> Option<usize> {
+pub fn waits_for_itself(steps: &[Step]) -> Option<usize> {
     let mut has_grown = vec![false; steps.len()];
     for _ in 0..steps.len() {
         for (i, step) in steps.iter().enumerate() {
-            has_grown[i] |= step.as_ref().is_none_or(|step| step.after().all(|before| has_grown[before]));
+            has_grown[i] |= step.after().all(|before| has_grown[before]);
         }
     }
     has_grown.iter().position(|grown| !grown)

@@ -6,6 +6,16 @@ use super::space::Space;
 use super::spec::StepSpec;
 
 impl Rules {
+    /// Tells of a space where there can be none, and of one that is missing.
+    pub fn check_given(&self, step: &StepSpec, lookup: &mut dyn Lookup) {
+        let is_free = self.needs == Needs::Nothing;
+        if is_free && step.space.is_some() {
+            lookup.wrong("space", format!("{} no space: it stays `inside` a shape", self.subject));
+        } else if !is_free && step.space.is_none() {
+            lookup.wrong("space", "this way of growing needs a `space`".to_owned());
+        }
+    }
+
     /// Tells of all keys of `step` that do not go with it, and of those that are missing.
     pub fn check(&self, step: &StepSpec, space: Option<&Space>, lookup: &mut dyn Lookup) {
         self.check_space(space, lookup);
@@ -21,7 +31,8 @@ impl Rules {
             ("form", step.form.is_some(), self.has_limbs),
         ];
         for (key, ..) in given.into_iter().filter(|(_, is_given, is_allowed)| *is_given && !is_allowed) {
-            lookup.wrong(key, format!("{} no `{key}`", self.subject));
+            let own = if key == "smooth" { " a `smooth` of their own, and" } else { "" };
+            lookup.wrong(key, format!("{}{own} no `{key}`", self.subject));
         }
         if step.toward.is_some() && !self.has_attractor {
             lookup.wrong("toward", "an attractor is for growth by segments and by voxels".to_owned());
@@ -44,7 +55,10 @@ impl Rules {
                 lookup.wrong("space", "in voxels there is nothing but growth `by.voxels`".to_owned());
             }
             (Needs::Lattice, Some(_)) => {
-                lookup.wrong("by", "only paths are planned among scattered nodes: this needs a lattice".to_owned());
+                lookup.wrong(
+                    "by",
+                    "only paths are planned among scattered nodes: this needs a lattice (`nodes.lattice`)".to_owned(),
+                );
             }
             (Needs::Graph | Needs::Nothing, Some(_)) => {}
         }

@@ -56,12 +56,6 @@ pub enum NodesSpec {
 }
 
 impl NodesSpec {
-    /// Is it a regular lattice?
-    #[must_use]
-    pub fn is_lattice(&self) -> bool {
-        matches!(self, Self::Lattice(_))
-    }
-
     /// Do the nodes lie in a plane?
     #[must_use]
     pub fn is_plane(&self) -> bool {

@@ -23,7 +23,7 @@ pub struct StepSpec {
     /// Take everything that is not given here from the step of this name.
     #[serde(default)]
     pub like: Option<Ref<Step>>,
-    /// The space to grow in; segments need none.
+    /// The space to grow in; segments and space colonisation need none.
     #[serde(default)]
     pub space: Option<Ref<Space>>,
     /// Where paths start.
@@ -156,8 +156,8 @@ pub struct EndpointSpec {
     /// Endpoints by hand.
     #[serde(default)]
     pub at: Option<Vec<Point>>,
-    /// Endpoints by hand, each reached through other places in turn: lists of points, the last of which is the endpoint
-    /// (scattered nodes only).
+    /// Endpoints by hand, each reached through other places in turn: lists of points, the last of which is the
+    /// endpoint.
     #[serde(default)]
     pub through: Option<Vec<Vec<Point>>>,
     /// Endpoints from an SVG file, its page stretched over the space's shape: the middle of each closed outline and

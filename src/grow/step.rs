@@ -20,7 +20,7 @@ use crate::skeleton::{Form, Skeleton, SymmetrySpec, Width};
 pub struct Step {
     /// Its name in the scene.
     pub name: String,
-    /// The space to grow in; segments have none.
+    /// The space to grow in; methods without a graph have none.
     pub space: Option<Space>,
     /// The name of that space: steps in voxels of the same name grow together.
     pub space_name: String,
@@ -189,10 +189,10 @@ impl Step {
         self.method.bytes_needed_from(self, grown)
     }
 
-    /// How many endpoints it has.
+    /// How many least-cost paths it plans.
     #[must_use]
-    pub fn count_endpoints(&self) -> u64 {
-        self.endpoints.iter().map(|set| set.placement.count() as u64).sum()
+    pub fn count_paths(&self) -> u64 {
+        self.endpoints.iter().map(|set| set.placement.paths() as u64).sum()
     }
 
     /// How many times it is there, by its symmetry.

@@ -26,6 +26,6 @@ pub use power::power;
 pub(crate) use prefetch::prefetch;
 pub use progress::{Cancelled, Progress};
 pub use random::{Stream, mix, name_of};
-pub use rotation::{frame_along, rotation, turned_toward};
+pub use rotation::{frame_along, rotated_toward, rotation};
 pub use srgb::{from_srgb, srgb_byte, to_srgb};
 pub use weights::Weights;

@@ -19,7 +19,7 @@ pub fn frame_along(z: DVec3) -> DMat3 {
 
 /// The unit vector `direction` rotated towards the unit vector `target` by `angle` radians, but not past it.
 #[must_use]
-pub fn turned_toward(direction: DVec3, target: DVec3, angle: f64) -> DVec3 {
+pub fn rotated_toward(direction: DVec3, target: DVec3, angle: f64) -> DVec3 {
     let between = libm::acos(direction.dot(target).clamp(-1.0, 1.0));
     if between <= angle {
         return target;
@@ -35,10 +35,10 @@ mod tests {
 
     #[test]
     fn turns_stop_at_their_target() {
-        let turned = turned_toward(DVec3::X, DVec3::NEG_Z, 0.3);
+        let turned = rotated_toward(DVec3::X, DVec3::NEG_Z, 0.3);
         assert!((libm::acos(turned.dot(DVec3::X)) - 0.3).abs() < 1e-12 && turned.z < 0.0);
-        assert_eq!(turned_toward(DVec3::X, DVec3::NEG_Z, 2.0), DVec3::NEG_Z);
-        let back = turned_toward(DVec3::Z, DVec3::NEG_Z, 0.5);
+        assert_eq!(rotated_toward(DVec3::X, DVec3::NEG_Z, 2.0), DVec3::NEG_Z);
+        let back = rotated_toward(DVec3::Z, DVec3::NEG_Z, 0.5);
         assert!((libm::acos(back.dot(DVec3::Z)) - 0.5).abs() < 1e-12);
         assert_eq!(frame_along(DVec3::Y) * DVec3::Z, DVec3::Y);
     }

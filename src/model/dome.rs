@@ -1,7 +1,7 @@
 //! The sky as a number of lights, for renderers that know no other soft light.
 
 use super::{Model, Sky};
-use crate::math::{Colour, DVec3};
+use crate::math::{Colour, DVec3, GOLDEN_ANGLE, from_height};
 
 /// Light that comes back from what the sun and the sky shine upon, as a share of the ground's colour.
 const BOUNCE: f64 = 0.35;
@@ -41,17 +41,13 @@ impl Dome {
     /// them and colours, so that each adds its colour times the cosine.
     #[must_use]
     pub fn lights(&self, count: u32) -> Vec<(DVec3, Colour)> {
-        // The golden angle.
-        let step = std::f64::consts::PI * (3.0 - libm::sqrt(5.0));
         let n = f64::from(count);
         // Cosines over the whole sphere's directions sum to count / 4.
         let share = 4.0 / n;
         (0..count)
             .map(|i| {
                 let z = 1.0 - (2.0 * f64::from(i) + 1.0) / n;
-                let r = libm::sqrt(1.0 - z * z);
-                let turn = step * f64::from(i);
-                let direction = DVec3::new(r * libm::cos(turn), r * libm::sin(turn), z);
+                let direction = from_height(z, GOLDEN_ANGLE * f64::from(i));
                 let Colour(light) = match &self.sky {
                     // A picture may change within a light's share of the sky.
                     Sky::Picture { picture, turn, strength } if z >= 0.0 => {

@@ -85,6 +85,7 @@ impl Loaded {
             AssembleError::Object { object, key: ObjectKey::Isosurface(key), problem } => {
                 (format!("object.{object}.skin.isosurface.{key}"), problem.to_string())
             }
+            AssembleError::Index(object) => (format!("object.{object}"), error.to_string()),
             AssembleError::Camera(error) => ("camera".to_owned(), error.to_string()),
         };
         Stage::Scene(self.error(&place, message))

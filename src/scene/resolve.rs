@@ -91,15 +91,16 @@ impl Resolver<'_> {
         if self.mistakes.is_empty() {
             self.check_expected();
         }
-        if let Some(stuck) = waits_for_itself(&steps).and_then(|i| scene.grow.keys().nth(i)) {
-            let message = "this step waits for itself: it grows from, or near, a step that waits for it".to_owned();
-            self.wrong(&format!("grow.{stuck}"), message);
-        }
         check_plants(&steps, &mut |step, key, message| {
             let key = if key == Key::Width { "width" } else { "from" };
             self.wrong(&format!("grow.{}.{key}", step.name), message.to_owned());
         });
-        steps.into_iter().collect()
+        let steps: Vec<Step> = steps.into_iter().collect::<Option<_>>()?;
+        if let Some(stuck) = waits_for_itself(&steps) {
+            let message = "this step waits for itself: it grows from, or near, a step that waits for it".to_owned();
+            self.wrong(&format!("grow.{}", steps[stuck].name), message);
+        }
+        Some(steps)
     }
 
     fn step(&mut self, name: &str, spec: &StepSpec, spaces: &BTreeMap<&String, Option<Space>>) -> Option<Step> {

@@ -194,7 +194,7 @@ impl Skeleton {
 
     /// The direction of the segment that ends at this node; `None` at a root.
     #[must_use]
-    pub fn way_into(&self, node: u32) -> Option<DVec3> {
+    pub fn direction_into(&self, node: u32) -> Option<DVec3> {
         let SkeletonNode { position, parent, .. } = self.nodes[node as usize];
         (position - self.nodes[parent? as usize].position).try_normalize()
     }

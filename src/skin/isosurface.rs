@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::geom::{Bounds, Surface, fill};
+use crate::geom::{Bounds, Surface, fill, with_neighbours};
 use crate::graph::{Graph, Lattice, LatticeError, Node, Window};
 use crate::grow::LatticeSpace;
 use crate::math::{Cancelled, DVec2, DVec3, Progress};
@@ -117,13 +117,7 @@ pub fn isosurface(
             if nodes > MOST_SAMPLES {
                 return Err(IsosurfaceError::TooManyNodes(nodes));
             }
-            match space.neighbours.count() {
-                4 => by_cost::<4>(space, skeletons, spec, seed, progress),
-                8 => by_cost::<8>(space, skeletons, spec, seed, progress),
-                6 => by_cost::<6>(space, skeletons, spec, seed, progress),
-                18 => by_cost::<18>(space, skeletons, spec, seed, progress),
-                _ => by_cost::<26>(space, skeletons, spec, seed, progress),
-            }
+            with_neighbours!(space.neighbours, by_cost(space, skeletons, spec, seed, progress))
         }
     }
 }
@@ -278,6 +272,7 @@ fn level(
     // Where nothing is inside any more the extraction ends at once.
     let is_inside = |at: [u32; 3]| value(cell(at)) < 0.0 && progress.check().is_ok();
     let mut surface = Surface::extract(window.size, is_inside, crossing).map(|p| low + p * window.spacing);
+    progress.check()?;
     for _ in 0..smooth {
         progress.check()?;
         surface.smooth(1);

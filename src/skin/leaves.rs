@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::grow::{Canopy, sky};
-use crate::math::{DMat3, DVec3, Degrees, Point, Ref, Stream, rotation, turned_toward};
+use crate::math::{DMat3, DVec3, Degrees, Point, Ref, Stream, rotated_toward, rotation};
 use crate::model::{BodyError, Digits, Material, Pose};
 use crate::skeleton::{Skeleton, SkeletonNode};
 
@@ -141,8 +141,8 @@ impl LeavesSpec {
     /// A leaf at `at` on a limb that goes along `way`.
     fn pose(&self, at: DVec3, way: DVec3, turn: Degrees, roll: f64, size: f64, digits: Digits) -> Pose {
         let side = rotation(way, turn.radians()) * way.any_orthonormal_vector();
-        let along = turned_toward(way, side, self.angle.radians());
-        let along = turned_toward(along, DVec3::NEG_Z, self.droop.radians());
+        let along = rotated_toward(way, side, self.angle.radians());
+        let along = rotated_toward(along, DVec3::NEG_Z, self.droop.radians());
         let facing = self.facing.map_or(DVec3::Z, |p| p.0);
         let along = if self.facing.is_some() { facing.cross(along).cross(facing).normalize_or(along) } else { along };
         // The upper side faces there as far as it can, and a little to either side.

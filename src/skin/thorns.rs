@@ -5,7 +5,7 @@ use rand::RngExt;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::math::{DVec3, Stream, rotation};
+use crate::math::{DVec3, GOLDEN_ANGLE, Stream, rotation};
 use crate::model::{Ball, Body, BodyError, Limbs, Object, Thorns};
 
 /// Thorns on the surface of limbs: cones of their own for POV-Ray and the preview, in RIB a displacement of the limbs.
@@ -29,9 +29,6 @@ pub struct ThornsSpec {
 
 /// Radius of a thorn's tip over that of its foot.
 const POINT: f64 = 0.15;
-/// The golden angle: successive thorns stand nowhere in rows.
-const GOLDEN: f64 = 2.399_963_229_728_653;
-
 impl ThornsSpec {
     /// What displacement shaders need of it.
     #[must_use]
@@ -66,7 +63,8 @@ impl ThornsSpec {
             BodyError::check_count(((thorns.balls.len() + thorns.segments.len()) as f64 + due * 3.0) as usize)?;
             for i in 0..due as u32 {
                 let share = (((first + f64::from(i)) * each - start) / area).clamp(0.0, 1.0);
-                turn += GOLDEN + random.random_range(-0.3..0.3);
+                // Successive thorns stand nowhere in rows.
+                turn += GOLDEN_ANGLE + random.random_range(-0.3..0.3);
                 let out = rotation(way, turn) * side;
                 let radius = a.radius + (b.radius - a.radius) * share;
                 let size = random.random_range(0.7..1.0);

@@ -11,10 +11,12 @@ use crate::geom::with_neighbours;
 use crate::graph::{Graph, Lattice, Node};
 use crate::grow::error::{GrowError, Key, Problem};
 use crate::grow::grown::Grown;
+use crate::grow::lookup::Lookup;
 use crate::grow::paths::refined;
 use crate::grow::site::Site;
 use crate::grow::space::Space;
 use crate::grow::spaces::{LatticeSpace, OnLattice};
+use crate::grow::spec::StepSpec;
 use crate::grow::starts::starts;
 use crate::grow::step::{Context, Method, Step, Unreached};
 use crate::grow::targets::targets;
@@ -43,7 +45,7 @@ impl Method for DbmSpec {
 
     fn bytes_needed(&self, step: &Step) -> u64 {
         let lattice = step.space.as_ref().and_then(Space::lattice);
-        lattice.map_or(0, |space| space.bytes_with_paths(step.count_endpoints(), 0))
+        lattice.map_or(0, |space| space.bytes_with_paths(step.count_paths(), 0))
     }
 }
 
@@ -70,6 +72,15 @@ fn grow_on<const N: usize>(
 }
 
 impl DbmSpec {
+    /// This, with what is wrong about the endpoints of `step` noted.
+    pub(in crate::grow) fn resolve(&self, step: &StepSpec, lookup: &mut dyn Lookup) -> Self {
+        for (key, _) in step.to.iter().filter(|(_, set)| set.through.is_some()) {
+            let message = "an aggregate grows to places, not through others: list them with `at`".to_owned();
+            lookup.wrong(&format!("to.{key}.through"), message);
+        }
+        *self
+    }
+
     /// Grows from `generators` until an end is touched: the skeleton, with the path to that end first, and how many
     /// nodes grew. Every tip ends a path, those in the open of class [`SIDE`].
     fn grow_cluster<const N: usize>(

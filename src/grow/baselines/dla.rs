@@ -14,7 +14,7 @@ use crate::grow::space::Space;
 use crate::grow::spaces::{LatticeSpace, OnLattice};
 use crate::grow::starts::starts;
 use crate::grow::step::{Context, Method, Step};
-use crate::math::{Cancelled, DVec3, Progress, Stream};
+use crate::math::{Cancelled, DVec3, Progress, Stream, from_height};
 use crate::skeleton::{Path, Skeleton, SkeletonNode};
 
 /// Walkers of the fast walk start over when they are this many times as far away as what has grown.
@@ -132,8 +132,7 @@ impl Cluster {
     fn direction(&self, random: &mut Stream) -> DVec3 {
         let turn = std::f64::consts::TAU * random.random::<f64>();
         let z: f64 = if self.is_flat { 0.0 } else { random.random_range(-1.0..1.0) };
-        let across = libm::sqrt((1.0 - z * z).max(0.0));
-        DVec3::new(across * libm::cos(turn), across * libm::sin(turn), z)
+        from_height(z, turn)
     }
 
     /// The first particle that a disc touches on its way from `p` along `way`, of length 1, and how far it goes.

@@ -9,7 +9,7 @@ use rustc_hash::FxHashMap;
 use super::spec::Colonise;
 use crate::geom::Shape;
 use crate::grow::error::{GrowError, Key, Problem};
-use crate::grow::grown::{Grown, MOST_NODES, NODE_BYTES};
+use crate::grow::grown::{Grown, MOST_NODES, NODE_BYTES, places};
 use crate::grow::near::MOST_REJECTIONS;
 use crate::grow::starts::source_places;
 use crate::grow::step::{Context, Generators, Method, Step};
@@ -18,6 +18,12 @@ use crate::skeleton::{Path, Skeleton, SkeletonNode};
 
 /// A limb that would grow as near to where it has grown before, in steps, is drawn to and fro by points on both sides.
 const AGAIN: f64 = 1e-3;
+
+/// Points that are tried between two questions whether to stop.
+const BETWEEN_CHECKS: usize = 4096;
+
+/// Bytes of a point, with what it draws.
+const POINT_BYTES: u64 = 64;
 
 impl Method for Colonise {
     fn name(&self) -> &'static str {
@@ -32,18 +38,19 @@ impl Method for Colonise {
         if starts.is_empty() {
             return Err(step.error(Key::From, Problem::NoEnds));
         }
-        let stream = Stream::new(context.seed, &format!("colonise/{}", step.name));
-        let points = self.scatter(stream).map_err(|problem| step.error(Key::MethodKey("inside", None), problem))?;
+        let inside = |problem: Problem| step.error(Key::MethodKey("inside", None), problem);
+        let mut points =
+            self.scatter(Stream::new(context.seed, &format!("colonise/{}", step.name)), context, &inside)?;
         let mut plant = Plant::new(self, &starts, step.classes.clone());
-        plant.reach_out(&points);
-        let mut left = points;
+        let overgrown = || step.error(Key::Method, Problem::Colonised(MOST_NODES));
+        plant.reach_out(&points, context, &overgrown)?;
         for round in 0..self.rounds {
-            left = plant.grow(left);
+            points = plant.grow(points, context)?;
             if plant.skeleton.nodes.len() as u64 > MOST_NODES {
-                return Err(step.error(Key::Method, Problem::Overgrown(MOST_NODES)));
+                return Err(overgrown());
             }
             context.progress.report("grow", f64::from(round + 1) / f64::from(self.rounds))?;
-            if left.is_empty() || !plant.is_growing {
+            if points.is_empty() || !plant.is_growing {
                 break;
             }
         }
@@ -52,10 +59,14 @@ impl Method for Colonise {
     }
 
     fn bytes_needed(&self, step: &Step) -> u64 {
-        // A limb is about as long as the shape is wide for every few points; each node is there once.
-        let across = self.inside.bounds().size().max_element() / self.step;
-        let nodes = (f64::from(self.points) * self.influence / self.step + across).min(MOST_NODES as f64);
-        nodes as u64 * NODE_BYTES * u64::from(step.parts()) + u64::from(self.points) * 64
+        let starts = if let Generators::At(points) = &step.source { points.len() } else { 0 };
+        self.bytes(step, starts)
+    }
+
+    fn bytes_needed_from(&self, step: &Step, grown: &[Option<&Skeleton>]) -> u64 {
+        let Generators::Steps(steps, part) = &step.source else { return self.bytes_needed(step) };
+        let starts = steps.iter().filter_map(|&i| grown[i]).map(|skeleton| places(skeleton, *part).len()).sum();
+        self.bytes(step, starts)
     }
 
     fn shapes(&self) -> Vec<&Shape> {
@@ -69,7 +80,12 @@ impl Method for Colonise {
 
 impl Colonise {
     /// The attraction points, uniform in the shape.
-    fn scatter(&self, mut stream: Stream) -> Result<Vec<DVec3>, Problem> {
+    fn scatter(
+        &self,
+        mut stream: Stream,
+        context: &Context<'_>,
+        wrong: &dyn Fn(Problem) -> GrowError,
+    ) -> Result<Vec<DVec3>, GrowError> {
         let bounds = self.inside.bounds();
         let mut points = Vec::with_capacity(self.points as usize);
         let mut rejections = 0;
@@ -82,11 +98,29 @@ impl Colonise {
             } else {
                 rejections += 1;
                 if rejections == MOST_REJECTIONS {
-                    return Err(Problem::NoRoom { placed: points.len(), count: self.points, apart: 0.0 });
+                    return Err(wrong(Problem::NoPoints { placed: points.len(), count: self.points }));
                 }
+            }
+            if (points.len() + rejections as usize).is_multiple_of(BETWEEN_CHECKS) {
+                context.progress.check()?;
             }
         }
         Ok(points)
+    }
+
+    /// Bytes of a plant with so many starts. A limb is about as long as the shape is wide for every few points; the trunk is
+    /// as long as the farthest start is from the shape.
+    fn bytes(&self, step: &Step, starts: usize) -> u64 {
+        let bounds = self.inside.bounds();
+        let away = match &step.source {
+            Generators::At(points) => {
+                points.iter().map(|p| p.distance(p.clamp(bounds.min, bounds.max))).fold(0.0, f64::max)
+            }
+            _ => 0.0,
+        };
+        let limbs = (bounds.size().max_element() + away + f64::from(self.points) * self.influence) / self.step;
+        let nodes = (limbs + starts as f64).min(MOST_NODES as f64);
+        nodes as u64 * NODE_BYTES * u64::from(step.parts()) + u64::from(self.points) * POINT_BYTES
     }
 }
 
@@ -136,26 +170,47 @@ impl<'a> Plant<'a> {
         nodes.map(far).reduce(nearer).filter(|&(_, distance)| distance <= self.own.influence)
     }
 
-    /// Grows straight from the node that is nearest to any of `points` until some can draw it: the trunk.
-    fn reach_out(&mut self, points: &[DVec3]) {
-        let mut all =
-            self.skeleton.nodes.iter().zip(0..).flat_map(|(n, i)| points.iter().map(move |&p| (i, n.position, p)));
-        let Some(first) = all.next() else { return };
-        let nearer = |a: (u32, DVec3, DVec3), b: (u32, DVec3, DVec3)| {
-            if b.1.distance_squared(b.2) < a.1.distance_squared(a.2) { b } else { a }
-        };
-        let (mut from, start, goal) = all.fold(first, nearer);
-        let steps = libm::ceil((start.distance(goal) - self.own.influence) / self.own.step).max(0.0) as u32;
-        let way = (goal - start).normalize_or_zero();
-        for i in 1..=steps {
-            self.add(start + way * (f64::from(i) * self.own.step), Some(from));
+    /// Where none of `points` draws a node: grows straight from the node nearest to any until one does. This is the trunk.
+    fn reach_out(
+        &mut self,
+        points: &[DVec3],
+        context: &Context<'_>,
+        overgrown: &dyn Fn() -> GrowError,
+    ) -> Result<(), GrowError> {
+        if points.par_iter().any(|&p| self.nearest(p).is_some()) {
+            return Ok(());
+        }
+        let Some((mut from, goal)) = self.nearest_pair(points, context)? else { return Ok(()) };
+        let start = self.skeleton.nodes[from as usize].position;
+        let steps = libm::ceil((start.distance(goal) - self.own.influence) / self.own.step).max(0.0);
+        if steps > MOST_NODES as f64 {
+            return Err(overgrown());
+        }
+        let direction = (goal - start).normalize_or_zero();
+        for i in 1..=steps as u32 {
+            self.add(start + direction * (f64::from(i) * self.own.step), Some(from));
             from = self.skeleton.nodes.len() as u32 - 1;
         }
+        Ok(())
+    }
+
+    /// The node and the point that are nearest to each other; of equals the first node, then the first point.
+    fn nearest_pair(&self, points: &[DVec3], context: &Context<'_>) -> Result<Option<(u32, DVec3)>, GrowError> {
+        let nearest_point = |(i, node): (usize, &SkeletonNode)| {
+            context.progress.check()?;
+            let far = points.iter().map(|p| p.distance_squared(node.position));
+            Ok(far.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map(|(point, far)| (far, i as u32, point)))
+        };
+        let nodes = self.skeleton.nodes.par_iter().enumerate();
+        let all: Vec<Option<(f64, u32, usize)>> = nodes.map(nearest_point).collect::<Result<_, GrowError>>()?;
+        let first = all.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(first.map(|(_, node, point)| (node, points[point])))
     }
 
     /// Grows a round; the points that are left.
-    fn grow(&mut self, points: Vec<DVec3>) -> Vec<DVec3> {
-        let drawn: Vec<Option<(u32, f64)>> = points.par_iter().map(|&p| self.nearest(p)).collect();
+    fn grow(&mut self, points: Vec<DVec3>, context: &Context<'_>) -> Result<Vec<DVec3>, GrowError> {
+        let draws = |&p: &DVec3| context.progress.check().map(|()| self.nearest(p));
+        let drawn: Vec<Option<(u32, f64)>> = points.par_iter().map(draws).collect::<Result<_, _>>()?;
         let mut ways = vec![DVec3::ZERO; self.skeleton.nodes.len()];
         for (&p, &drawn) in points.iter().zip(&drawn) {
             if let Some((node, _)) = drawn {
@@ -175,14 +230,15 @@ impl<'a> Plant<'a> {
             self.is_growing = true;
         }
         let is_left = |p: &DVec3| self.nearest(*p).is_none_or(|(_, distance)| distance > self.own.kill);
-        points.into_par_iter().filter(is_left).collect()
+        Ok(points.into_par_iter().filter(is_left).collect())
     }
 
-    /// What grew, a path to every tip.
+    /// What grew, a path to every tip; starts that drew nothing have none.
     fn finish(self) -> Skeleton {
         let mut skeleton = self.skeleton;
         let counts = skeleton.child_counts();
-        let tips = (0..skeleton.nodes.len() as u32).filter(|&i| counts[i as usize] == 0);
+        let tips = (0..skeleton.nodes.len() as u32)
+            .filter(|&i| counts[i as usize] == 0 && skeleton.nodes[i as usize].parent.is_some());
         let paths = tips.zip(0..).map(|(end, name)| Path { end, name, ..Path::default() });
         skeleton.paths = paths.collect();
         skeleton

@@ -110,7 +110,7 @@ impl Method for FractalSpec {
     fn bytes_needed(&self, step: &Step) -> u64 {
         // The nearest node and how far it is, and the skeleton's node.
         let lattice = step.space.as_ref().and_then(Space::lattice);
-        lattice.map_or(0, |space| space.bytes_with_paths(step.count_endpoints(), 12))
+        lattice.map_or(0, |space| space.bytes_with_paths(step.count_paths(), 12))
     }
 }
 

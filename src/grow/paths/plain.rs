@@ -55,7 +55,7 @@ impl Method for Paths {
 
     fn bytes_needed(&self, step: &Step) -> u64 {
         match &step.space {
-            Some(Space::Lattice(space)) => space.bytes_with_paths(step.count_endpoints(), 0),
+            Some(Space::Lattice(space)) => space.bytes_with_paths(step.count_paths(), 0),
             Some(Space::Scatter(space)) => {
                 // A repeated step keeps sets of nodes, and makes some at a time.
                 let graphs = if step.repeat.is_some() { 20 } else { 1 };
@@ -150,7 +150,7 @@ fn grow(step: &Step, site: &mut dyn PathSite, context: &Context<'_>) -> Result<(
     }
     let nodes: Vec<Node> = targets.iter().map(|target| target.node).collect();
     let mut marks = Vec::new();
-    if !nodes.is_empty() || legs.is_empty() {
+    if !nodes.is_empty() || legs.is_empty() || !context.show.is_empty() {
         let everywhere = context.show.contains(&MarkKind::Contours);
         let plan = site.plan(&generators, (!everywhere).then_some(&nodes[..]), context.progress);
         let tree = plan.map_err(|error| step.plan_error(error))?;

@@ -93,10 +93,3 @@ impl RefineSpec {
         Ok(Refine { times, ratio: self.ratio, reach: self.reach })
     }
 }
-
-impl Refine {
-    /// The spacing of the last round's lattice.
-    pub fn finest(&self, spacing: f64) -> f64 {
-        (0..self.times).fold(spacing, |spacing, _| spacing / f64::from(self.ratio))
-    }
-}

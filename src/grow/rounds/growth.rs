@@ -20,7 +20,7 @@ use crate::grow::grown::{Grown, Part};
 use crate::grow::space::Space;
 use crate::grow::spaces::{ScatterSpace, SubgraphPlace};
 use crate::grow::step::{Context, Generators, Step, Unreached};
-use crate::math::{DMat3, DVec3, Progress, Stream, frame_along, mix, rotation, turned_toward};
+use crate::math::{DMat3, DVec3, Progress, Stream, frame_along, from_height, mix, rotated_toward, rotation};
 use crate::plan::routes;
 use crate::skeleton::{Path, Skeleton, SkeletonNode};
 
@@ -126,7 +126,10 @@ impl<'a> Rounds<'a> {
     /// # Errors
     /// [`GrowError::Step`] where there are no ends.
     pub fn begin(step: &'a Step, context: &Context<'_>) -> Result<Option<Self>, GrowError> {
-        let (Some(repeat), Some(Space::Scatter(space))) = (&step.repeat, &step.space) else { return Ok(None) };
+        let Some(repeat) = &step.repeat else { return Ok(None) };
+        let Some(Space::Scatter(space)) = &step.space else {
+            return Err(step.error(Key::Space, Problem::NotRepeated));
+        };
         let table = space.table().map_err(|error| step.error(Key::Weights, Problem::Weights(error)))?;
         let mut first = FirstEnds {
             skeleton: Skeleton::new(step.classes.clone()),
@@ -281,8 +284,7 @@ impl<'a> Rounds<'a> {
                 let mut random = Stream::new(self.seed, &format!("ways/{}", self.step.name)).nth(end.name);
                 let z: f64 = if self.space.is_plane { 0.0 } else { random.random_range(-1.0..1.0) };
                 let turn = std::f64::consts::TAU * random.random::<f64>();
-                let across = libm::sqrt(1.0 - z * z);
-                DVec3::new(across * libm::cos(turn), across * libm::sin(turn), z)
+                from_height(z, turn)
             }
         };
         for turn in &self.repeat.turns {
@@ -297,7 +299,7 @@ impl<'a> Rounds<'a> {
                 }
             };
             if let Some(target) = target {
-                way = turned_toward(way, target, turn.by.at(index) * (std::f64::consts::PI / 180.0));
+                way = rotated_toward(way, target, turn.by.at(index) * (std::f64::consts::PI / 180.0));
             }
         }
         let size = self.repeat.size.at(index) * share.size.unwrap_or(1.0);

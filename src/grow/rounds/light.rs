@@ -1,7 +1,7 @@
 //! Light from the sky past all that has grown.
 
 use crate::bvh::{Cones, Ray, RoundCone};
-use crate::math::DVec3;
+use crate::math::{DVec3, GOLDEN_ANGLE, from_height};
 use crate::skeleton::Skeleton;
 
 /// What throws shade: everything that grew before this round.
@@ -39,14 +39,11 @@ impl Canopy {
 /// `count` directions spread evenly over the sky within `open` radians of the vertical (a spiral by the golden angle).
 #[must_use]
 pub fn sky(count: u32, open: f64) -> Vec<DVec3> {
-    let golden = std::f64::consts::PI * (3.0 - libm::sqrt(5.0));
     let depth = 1.0 - libm::cos(open);
     (0..count)
         .map(|i| {
             let z = 1.0 - depth * (f64::from(i) + 0.5) / f64::from(count);
-            let across = libm::sqrt((1.0 - z * z).max(0.0));
-            let turn = golden * f64::from(i);
-            DVec3::new(across * libm::cos(turn), across * libm::sin(turn), z)
+            from_height(z, GOLDEN_ANGLE * f64::from(i))
         })
         .collect()
 }

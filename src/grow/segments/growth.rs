@@ -12,7 +12,7 @@ use crate::grow::error::{GrowError, Key, Problem};
 use crate::grow::grown::{Grown, MOST_NODES, Part};
 use crate::grow::limb_starts::{Start, branch_name};
 use crate::grow::step::{Context, Generators, Method, Step, Yield};
-use crate::math::{DVec3, Stream, frame_along};
+use crate::math::{DVec3, Stream, frame_along, from_polar};
 use crate::skeleton::{Path, Skeleton, SkeletonNode};
 
 /// Limbs that grow together: enough that handing them out costs nothing.
@@ -104,8 +104,7 @@ impl Growth {
 
 /// A direction at `angle` from `way`, and `turn` about it.
 fn turned(way: DVec3, angle: f64, turn: f64) -> DVec3 {
-    let (across, along) = (libm::sin(angle), libm::cos(angle));
-    frame_along(way) * DVec3::new(across * libm::cos(turn), across * libm::sin(turn), along)
+    frame_along(way) * from_polar(angle, turn)
 }
 
 /// A number between the two.

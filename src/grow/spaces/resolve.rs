@@ -164,8 +164,8 @@ fn field(key: &str, spec: &FieldSpec, frame: Bounds, up: usize, lookup: &mut dyn
                 lookup.wrong(&of("height"), "the space has no height".to_owned());
                 return None;
             }
-            let (cheap, dear) = if *cheap == HeightEnd::Low { (low, high) } else { (high, low) };
-            Measure::Height { up, cheap, dear }
+            let (cheap, costly) = if *cheap == HeightEnd::Low { (low, high) } else { (high, low) };
+            Measure::Height { up, cheap, costly }
         }
         MeasureSpec::Shape(shape) => Measure::Shape(lookup.shape(&of("shape"), shape)?),
         MeasureSpec::Map { file } => Measure::Map { picture: lookup.grey(&of("map.file"), file)?, frame, up },

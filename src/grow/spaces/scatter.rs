@@ -234,7 +234,7 @@ impl ScatterSpace {
 
     /// May ends share nodes? Not where something is forbidden, or joined by a length in the scene's units.
     pub(in crate::grow) fn is_alike(&self) -> bool {
-        self.forbid.is_none() && matches!(self.joining, Joining::Yao(_))
+        self.forbid.is_none() && matches!(self.joining, Joining::Yao(_) | Joining::Triangular)
     }
 
     /// Nodes around an end, in the space's own coordinates; the first is the end. What is forbidden, in the scene's

@@ -234,7 +234,7 @@ impl Automaton {
             }
             open.push((score + self.light.score(went, |_| true), score, at, went));
         }
-        // Rays are dear: none are cast for what could not be the best even in full light.
+        // Rays are costly: none are cast for what could not be the best even in full light.
         open.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut best: Option<Choice> = None;
         for (most, rest, at, went) in open {

@@ -40,13 +40,7 @@ pub(in crate::grow) fn resolve(
         in_order(lookup, "by.voxels.branches.age", branches.age.map(f64::from));
         (branches.age, angles(lookup, "by.voxels.branches.angle", branches.angle))
     });
-    if let Some(sun) = &spec.light.sun {
-        in_order(lookup, "by.voxels.light.sun.hours", sun.hours);
-        if sun.directions().is_empty() {
-            let message = "the sun is below the horizon at these hours of that day".to_owned();
-            lookup.wrong("by.voxels.light.sun", message);
-        }
-    }
+    check_sun(spec, lookup);
     // Meshes are sampled at every voxel.
     let sampled = |shape: Shape| side.map_or(shape.clone(), |side| shape.sampled(side));
     let cling = match &spec.cling {
@@ -77,4 +71,13 @@ pub(in crate::grow) fn resolve(
         heading: heading(lookup, "by.voxels.heading", spec.heading),
         toward: step.toward.as_ref().map(attractor),
     })
+}
+
+fn check_sun(spec: &VoxelsSpec, lookup: &mut dyn Lookup) {
+    let Some(sun) = &spec.light.sun else { return };
+    in_order(lookup, "by.voxels.light.sun.hours", sun.hours);
+    if sun.directions().is_empty() {
+        let message = "the sun is below the horizon at these hours of that day".to_owned();
+        lookup.wrong("by.voxels.light.sun", message);
+    }
 }

@@ -121,7 +121,9 @@ impl Expr {
     fn is_negative(&self) -> bool {
         match self {
             Self::Number(x) => x.is_sign_negative(),
-            Self::Pair(Operation::Add | Operation::Sub | Operation::Mul | Operation::Div, a, _) => a.is_negative(),
+            Self::Pair(Operation::Add | Operation::Sub, a, _) => a.is_negative(),
+            // A sum in a product stands in parentheses.
+            Self::Pair(Operation::Mul | Operation::Div, a, _) => !a.is_sum() && a.is_negative(),
             _ => false,
         }
     }
@@ -227,6 +229,7 @@ mod tests {
             (Expr::X / Expr::Y * Expr::Z, "x/y*z", 2.0 / 3.0 * 5.0),
             (Expr::X + number(-2.0) * Expr::Y, "x-2*y", -4.0),
             (Expr::X - number(-2.0), "x-(-2)", 4.0),
+            (Expr::X + (number(-2.0) + Expr::X) * Expr::Y, "x+(-2+x)*y", 2.0),
             (number(1.0).min(Expr::X).max(0.5), "max(min(1,x),0.5)", 1.0),
             ((Expr::X * Expr::X + Expr::Z).sqrt().abs(), "abs(sqrt(x*x+z))", 3.0),
         ] {
