@@ -108,8 +108,8 @@ mod tests {
     fn inner_nodes_have_six_neighbours_at_the_spacing() {
         let plan = ScatterPlan { spacing: 0.5, is_plane: true, joining: &Joining::Triangular, fixed: &[], owner: None };
         let graph = Scatter::new(&plan, &Square, &Stream::new(1, "triangles")).unwrap();
-        // One node for each half of a rhombus: an area of sqrt(3) / 2 spacing^2.
-        assert!((graph.len() as f64 / (100.0 / (0.25 * ROW)) - 1.0).abs() < 0.06, "{}", graph.len());
+        // 24 rows fit, 0.433 apart, of 21 and of 20 nodes by turns.
+        assert_eq!(graph.len(), 12 * 21 + 12 * 20);
         for node in (0..graph.len() as u32).map(Node) {
             let p = graph.position(node);
             if Square.margin(p) < -0.6 {

@@ -47,7 +47,10 @@ impl Rules {
 
     fn check_space(&self, space: Option<&Space>, lookup: &mut dyn Lookup) {
         match (self.needs, space) {
-            (_, None) | (Needs::Voxels, Some(Space::Voxels(_))) | (Needs::Lattice, Some(Space::Lattice(_))) => {}
+            (_, None)
+            | (Needs::Nothing, _)
+            | (Needs::Voxels, Some(Space::Voxels(_)))
+            | (Needs::Lattice, Some(Space::Lattice(_))) => {}
             (Needs::Voxels, Some(_)) => {
                 lookup.wrong("space", "growth by voxels needs a space with `nodes.voxels`".to_owned());
             }
@@ -60,7 +63,7 @@ impl Rules {
                     "only paths are planned among scattered nodes: this needs a lattice (`nodes.lattice`)".to_owned(),
                 );
             }
-            (Needs::Graph | Needs::Nothing, Some(_)) => {}
+            (Needs::Graph, Some(_)) => {}
         }
         let nodes = space.and_then(Space::lattice).map_or(0, |space| space.window.nodes());
         if nodes > self.most_nodes {

@@ -479,7 +479,7 @@ grow = ["ivy", "stem"]
             "grow.stem.by.segments.sprout",
             "needs `from.all`",
         ),
-        (segments, "by.segments = { depth = 5 }\nspace = \"air\"", "grow.stem.space", "needs no space"),
+        (segments, "by.segments = { depth = 5 }\nspace = \"air\"", "grow.stem.space", "has no space"),
         (segments, "by.segments = { depth = 5 }\nrepeat = { times = 2 }", "grow.stem.repeat", "has no `repeat`"),
         (
             segments,

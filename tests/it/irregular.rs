@@ -58,9 +58,10 @@ fn bad_input_is_one_clear_error() {
         (
             r#"shape.union = [{ cylinder = { from = [0, 0, 0], to = [0, 0, 2.2], radius = 0.15 } }, "crown"]"#,
             r#"shape.intersection = ["crown", { sphere = { centre = [0, 0, -9], radius = 1 } }]"#,
-            "grow.trunk.from",
-            "outside the space",
+            "space.first.nodes",
+            "no node fits",
         ),
+        ("from.at = [[0, 0, 0]]", "from.at = [[0, 0, -4]]", "grow.trunk.from", "outside the space"),
         // A stem that ends below the crown.
         ("to = [0, 0, 2.2], radius = 0.15", "to = [0, 0, 0.9], radius = 0.15", "", ""),
         (

@@ -55,8 +55,13 @@ fn small(text: &str) -> String {
         .replace("nodes.lattice = { spacing = 0.14,", "nodes.lattice = { spacing = 0.4,")
 }
 
+/// A third, unless all is to be tested.
+fn cases() -> u32 {
+    if std::env::var_os("LICHTENBERG_TEST_ALL").is_some() { 3000 } else { 1000 }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(3000))]
+    #![proptest_config(ProptestConfig::with_cases(cases()))]
 
     #[test]
     fn mutated_scenes_do_no_harm(
