@@ -1,5 +1,5 @@
 //! Every scene's files in another build: each scene grows on one thread, and gives the bytes of tests/digests.txt. The
-//! tests in `it` hold the same on two threads. `./run-tests` builds this alone as a release, `--all` in the profile dev too.
+//! tests in `it` hold the same on two threads. `./run-tests --all` builds this in the profiles dev and release.
 
 #[path = "it/digests.rs"]
 mod digests;
@@ -23,7 +23,7 @@ fn files_are_the_same_everywhere() {
                 let scene = load(&Source { name: name.clone(), text: text.to_owned(), folder }, &[]).unwrap();
                 let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
                 let model = model(&scene, &grown, [320, 240], &Progress::default()).unwrap();
-                digests::digests(&name, &scene, &model)
+                digests::digests(&name, &scene, &model, true)
             });
             let place = scenes.iter().position(|(other, ..)| *other == name).unwrap();
             found.lock().unwrap()[place] = lines;
@@ -34,5 +34,5 @@ fn files_are_the_same_everywhere() {
             scope.spawn(work);
         }
     });
-    digests::compare(&found.into_inner().unwrap().concat());
+    digests::compare(&found.into_inner().unwrap().concat(), true);
 }

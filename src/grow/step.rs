@@ -10,6 +10,7 @@ use super::grown::{Grown, Part};
 use super::paths::Refine;
 use super::rounds::Repeat;
 use super::space::Space;
+use super::spaces::LatticeSpace;
 use crate::geom::{MarkKind, Shape};
 use crate::math::{DVec3, Progress};
 use crate::plan::PlanError;
@@ -174,6 +175,18 @@ impl Step {
             refine: None,
             smooth: 0.0,
             unreached: Unreached::Error,
+        }
+    }
+
+    /// The lattice that it grows in.
+    ///
+    /// # Errors
+    /// A space of another kind, or none.
+    pub fn lattice(&self) -> Result<&LatticeSpace, GrowError> {
+        match &self.space {
+            Some(Space::Lattice(space)) => Ok(space),
+            Some(_) => Err(self.error(Key::Space, Problem::WrongSpace("a lattice"))),
+            None => Err(self.error(Key::Space, Problem::NoSpace)),
         }
     }
 

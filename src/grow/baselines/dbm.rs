@@ -14,7 +14,6 @@ use crate::grow::grown::Grown;
 use crate::grow::lookup::Lookup;
 use crate::grow::paths::refined;
 use crate::grow::site::Site;
-use crate::grow::space::Space;
 use crate::grow::spaces::{LatticeSpace, OnLattice};
 use crate::grow::spec::StepSpec;
 use crate::grow::starts::starts;
@@ -36,16 +35,12 @@ impl Method for DbmSpec {
     }
 
     fn grow(&self, step: &Step, context: &Context<'_>) -> Result<Grown, GrowError> {
-        match &step.space {
-            Some(Space::Lattice(space)) => with_neighbours!(space.neighbours, grow_on(self, step, space, context)),
-            Some(_) => Err(step.error(Key::Space, Problem::WrongSpace("a lattice"))),
-            None => Err(step.error(Key::Space, Problem::NoSpace)),
-        }
+        let space = step.lattice()?;
+        with_neighbours!(space.neighbours, grow_on(self, step, space, context))
     }
 
     fn bytes_needed(&self, step: &Step) -> u64 {
-        let lattice = step.space.as_ref().and_then(Space::lattice);
-        lattice.map_or(0, |space| space.bytes_with_paths(step.count_paths(), 0))
+        step.lattice().map_or(0, |space| space.bytes_with_paths(step.count_paths(), 0))
     }
 }
 

@@ -6,7 +6,7 @@ use rand::RngExt;
 use super::spec::{DlaSpec, Walk};
 use crate::geom::with_neighbours;
 use crate::graph::{Graph, Lattice, Node};
-use crate::grow::error::{GrowError, Key, Problem};
+use crate::grow::error::GrowError;
 use crate::grow::grown::Grown;
 use crate::grow::lookup::Lookup;
 use crate::grow::site::Site;
@@ -171,16 +171,12 @@ impl Method for DlaSpec {
     }
 
     fn grow(&self, step: &Step, context: &Context<'_>) -> Result<Grown, GrowError> {
-        match &step.space {
-            Some(Space::Lattice(space)) => with_neighbours!(space.neighbours, grow_on(self, step, space, context)),
-            Some(_) => Err(step.error(Key::Space, Problem::WrongSpace("a lattice"))),
-            None => Err(step.error(Key::Space, Problem::NoSpace)),
-        }
+        let space = step.lattice()?;
+        with_neighbours!(space.neighbours, grow_on(self, step, space, context))
     }
 
     fn bytes_needed(&self, step: &Step) -> u64 {
-        let lattice = step.space.as_ref().and_then(Space::lattice);
-        lattice.map_or(0, |space| space.bytes_with_paths(0, 5))
+        step.lattice().map_or(0, |space| space.bytes_with_paths(0, 5))
     }
 }
 

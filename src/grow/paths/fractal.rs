@@ -17,7 +17,6 @@ use crate::grow::grown::Grown;
 use crate::grow::lookup::Lookup;
 use crate::grow::rules::{MOST_DENSE, Needs, Rules};
 use crate::grow::site::Site;
-use crate::grow::space::Space;
 use crate::grow::spaces::{LatticeSpace, OnLattice};
 use crate::grow::spec::StepSpec;
 use crate::grow::starts::{Placed, starts};
@@ -100,17 +99,13 @@ impl Method for FractalSpec {
     }
 
     fn grow(&self, step: &Step, context: &Context<'_>) -> Result<Grown, GrowError> {
-        match &step.space {
-            Some(Space::Lattice(space)) => with_neighbours!(space.neighbours, grow_on(self, step, space, context)),
-            Some(_) => Err(step.error(Key::Space, Problem::WrongSpace("a lattice"))),
-            None => Err(step.error(Key::Space, Problem::NoSpace)),
-        }
+        let space = step.lattice()?;
+        with_neighbours!(space.neighbours, grow_on(self, step, space, context))
     }
 
     fn bytes_needed(&self, step: &Step) -> u64 {
         // The nearest node and how far it is, and the skeleton's node.
-        let lattice = step.space.as_ref().and_then(Space::lattice);
-        lattice.map_or(0, |space| space.bytes_with_paths(step.count_paths(), 12))
+        step.lattice().map_or(0, |space| space.bytes_with_paths(step.count_paths(), 12))
     }
 }
 

@@ -14,7 +14,6 @@ use crate::graph::{Graph, Lattice, Mask, Node, Window};
 use crate::grow::error::{GrowError, Key, Problem};
 use crate::grow::grown::Grown;
 use crate::grow::site::Site;
-use crate::grow::space::Space;
 use crate::grow::spaces::{LatticeSpace, OnLattice};
 use crate::grow::starts::starts;
 use crate::grow::step::{Context, Method, Step, Yield};
@@ -161,15 +160,12 @@ impl Method for RegionsSpec {
     }
 
     fn grow(&self, step: &Step, context: &Context<'_>) -> Result<Grown, GrowError> {
-        match &step.space {
-            Some(Space::Lattice(space)) => with_neighbours!(space.neighbours, grow_on(self, step, space, context)),
-            Some(_) => Err(step.error(Key::Space, Problem::WrongSpace("a lattice"))),
-            None => Err(step.error(Key::Space, Problem::NoSpace)),
-        }
+        let space = step.lattice()?;
+        with_neighbours!(space.neighbours, grow_on(self, step, space, context))
     }
 
     fn bytes_needed(&self, step: &Step) -> u64 {
-        let Some(space) = step.space.as_ref().and_then(Space::lattice) else { return 0 };
+        let Ok(space) = step.lattice() else { return 0 };
         // A region and a cost, carried along paths, and those of lattices twice as fine.
         space.bytes_with_paths(0, 20_u64 << (space.neighbours.dimensions() * self.refine))
     }
