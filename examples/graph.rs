@@ -12,14 +12,14 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 use std::time::Instant;
 
+use lichtenberg::geom::Neighbours;
 use lichtenberg::graph::{Graph, Lattice, Window};
 use lichtenberg::math::{DVec3, Progress, Stream, Weights};
 use lichtenberg::plan::{Goal, plan};
 
-fn run<const N: usize>(side: u32, alpha: f64, folder: &Path) -> Result<(), Box<dyn Error>> {
-    let dimensions = if N == 4 || N == 8 { 2 } else { 3 };
-    let window = Window::new(DVec3::ZERO, DVec3::splat(f64::from(side - 1)), 1.0, dimensions)?;
-    let lattice: Lattice<N> = Lattice::plain(window, &Stream::new(1, "compare"), Weights { max: 10.0, alpha })?;
+fn run(neighbours: Neighbours, side: u32, alpha: f64, folder: &Path) -> Result<(), Box<dyn Error>> {
+    let window = Window::new(DVec3::ZERO, DVec3::splat(f64::from(side - 1)), 1.0, neighbours.dimensions())?;
+    let lattice = Lattice::plain(window, neighbours, &Stream::new(1, "compare"), Weights { max: 10.0, alpha })?;
     let root = lattice.node(window.size.map(|s| s / 2));
     let mut best = f64::INFINITY;
     for _ in 0..5 {
@@ -66,12 +66,5 @@ fn main() -> Result<(), Box<dyn Error>> {
         rayon::ThreadPoolBuilder::new().num_threads(threads.parse()?).build_global()?;
     }
     let (side, alpha, folder) = (side.parse()?, alpha.parse()?, Path::new(folder));
-    match neighbours.as_str() {
-        "4" => run::<4>(side, alpha, folder),
-        "8" => run::<8>(side, alpha, folder),
-        "6" => run::<6>(side, alpha, folder),
-        "18" => run::<18>(side, alpha, folder),
-        "26" => run::<26>(side, alpha, folder),
-        other => Err(format!("{other} is no neighbourhood").into()),
-    }
+    run(Neighbours::try_from(neighbours.parse::<u32>()?)?, side, alpha, folder)
 }

@@ -16,8 +16,9 @@ struct Ring {
 }
 
 impl Graph for Ring {
-    const SLOT_BITS: u32 = 2;
-
+    fn slot_bits(&self) -> u32 {
+        2
+    }
     fn cells(&self) -> usize {
         self.towns as usize
     }

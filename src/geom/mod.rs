@@ -24,7 +24,6 @@ mod voxels;
 pub use bounds::Bounds;
 pub use closed_mesh::{ClosedMesh, ClosedMeshError};
 pub use mark::{Mark, MarkKind};
-pub(crate) use neighbours::with_neighbours;
 pub use neighbours::{Neighbours, NeighboursError};
 pub use occupancy::Occupancy;
 pub use outline::{Outline, OutlineError, simplified};

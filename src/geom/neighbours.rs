@@ -39,6 +39,11 @@ impl Neighbours {
         }
     }
 
+    /// [`Neighbours::new`] in a constant, where another number is a compile-time error.
+    pub(crate) const fn known(count: u32) -> Self {
+        Self::new(count).expect("4, 8, 6, 18 or 26 neighbours")
+    }
+
     /// The number of neighbours of an interior node.
     #[must_use]
     pub const fn count(self) -> u32 {
@@ -51,35 +56,49 @@ impl Neighbours {
         if matches!(self.0, 4 | 8) { 2 } else { 3 }
     }
 
-    /// The step of each of the `N` slots: opposite steps in pairs, the positive one first.
-    ///
-    /// # Panics
-    /// When `N` is not a neighbourhood; in a constant, that is a compile-time error.
+    /// Is the lattice one of the plane?
     #[must_use]
-    pub const fn steps<const N: usize>() -> [[i32; 3]; N] {
-        let mut steps = [[0; 3]; N];
-        let (mut slot, mut i) = (0, 0);
-        while i < POSITIVE.len() {
-            let [x, y, z] = POSITIVE[i];
-            let changes = x.abs() + y.abs() + z.abs();
-            let belongs = match N {
-                4 => z == 0 && changes == 1,
-                8 => z == 0,
-                6 => changes == 1,
-                18 => changes <= 2,
-                26 => true,
-                _ => panic!("N is not a neighbourhood"),
-            };
-            if belongs {
-                steps[slot] = [x, y, z];
-                steps[slot + 1] = [-x, -y, -z];
-                slot += 2;
-            }
-            i += 1;
-        }
-        assert!(slot == N);
-        steps
+    pub const fn is_plane(self) -> bool {
+        self.dimensions() == 2
     }
+
+    /// The step of each slot: opposite steps in pairs, the positive one first.
+    #[inline(always)]
+    #[must_use]
+    pub const fn steps(self) -> &'static [[i32; 3]] {
+        match self.0 {
+            4 => const { &steps_of::<4>() },
+            8 => const { &steps_of::<8>() },
+            6 => const { &steps_of::<6>() },
+            18 => const { &steps_of::<18>() },
+            _ => const { &steps_of::<26>() },
+        }
+    }
+}
+
+/// The steps of the neighbourhood with `N` neighbours.
+const fn steps_of<const N: usize>() -> [[i32; 3]; N] {
+    let mut steps = [[0; 3]; N];
+    let (mut slot, mut i) = (0, 0);
+    while i < POSITIVE.len() {
+        let [x, y, z] = POSITIVE[i];
+        let changes = x.abs() + y.abs() + z.abs();
+        let belongs = match N {
+            4 => z == 0 && changes == 1,
+            8 => z == 0,
+            6 => changes == 1,
+            18 => changes <= 2,
+            _ => true,
+        };
+        if belongs {
+            steps[slot] = [x, y, z];
+            steps[slot + 1] = [-x, -y, -z];
+            slot += 2;
+        }
+        i += 1;
+    }
+    assert!(slot == N);
+    steps
 }
 
 /// A number of neighbours that no lattice has.
@@ -101,38 +120,19 @@ impl From<Neighbours> for u32 {
     }
 }
 
-/// Calls a function that is generic over the number of neighbours, by a value of it.
-macro_rules! with_neighbours {
-    ($neighbours:expr, $function:ident($($argument:expr),* $(,)?)) => {
-        match $neighbours.count() {
-            4 => $function::<4>($($argument),*),
-            8 => $function::<8>($($argument),*),
-            6 => $function::<6>($($argument),*),
-            18 => $function::<18>($($argument),*),
-            _ => $function::<26>($($argument),*),
-        }
-    };
-}
-pub(crate) use with_neighbours;
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn opposite_slots_are_pairs() {
-        fn check<const N: usize>() {
-            let steps = Neighbours::steps::<N>();
-            for slot in 0..N {
+        for count in [4, 8, 6, 18, 26] {
+            let steps = Neighbours::new(count).unwrap().steps();
+            assert_eq!(steps.len(), count as usize);
+            for slot in 0..steps.len() {
                 assert_eq!(steps[slot ^ 1], steps[slot].map(|c| -c));
-                assert!(Neighbours::new(N as u32).is_some());
             }
         }
-        check::<4>();
-        check::<8>();
-        check::<6>();
-        check::<18>();
-        check::<26>();
         assert!(Neighbours::new(7).is_none());
     }
 }

@@ -64,19 +64,13 @@ impl NearParameters<'_> {
     /// # Errors
     /// [`NearError`].
     pub fn field(&self, is_core: bool) -> Result<NearField, NearError> {
-        match self.stroke.glow.near.neighbours.count() {
-            4 => self.field_on::<4>(is_core),
-            _ => self.field_on::<8>(is_core),
-        }
-    }
-
-    fn field_on<const N: usize>(&self, is_core: bool) -> Result<NearField, NearError> {
-        let weights = self.stroke.glow.near.weights;
+        let near = &self.stroke.glow.near;
+        let (neighbours, weights) = (near.neighbours, near.weights);
         let window = self.window()?;
         let stream = Stream::new(self.seed, &format!("glow/{}", self.stroke.name));
-        let lattice: Lattice<N> = Lattice::plain(window, &stream, weights)?;
+        let lattice = Lattice::plain(window, neighbours, &stream, weights)?;
         let (generators, thickness) = self.generators(&lattice, is_core);
-        let mean = mean_cost::<N>(weights)?;
+        let mean = mean_cost(neighbours, weights)?;
         let plan = plan(&lattice, &generators, Goal::Everything, self.progress)?;
         let range = lattice.weight_range();
         let costs = plan.costs(lattice.nodes());
@@ -115,7 +109,7 @@ impl NearParameters<'_> {
     }
 
     /// The nodes along the stroke, and T at each: the greatest of several.
-    fn generators<const N: usize>(&self, lattice: &Lattice<N>, is_core: bool) -> (Vec<Node>, HashMap<Node, f64>) {
+    fn generators(&self, lattice: &Lattice, is_core: bool) -> (Vec<Node>, HashMap<Node, f64>) {
         let spacing = lattice.window().spacing;
         let mut thickness: HashMap<Node, f64> = HashMap::new();
         let mut generators = Vec::new();

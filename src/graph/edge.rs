@@ -22,7 +22,7 @@ pub struct Edge {
 /// What a least-cost search needs of a graph.
 pub trait Graph: Sync {
     /// Bits that hold a slot's number plus 1.
-    const SLOT_BITS: u32;
+    fn slot_bits(&self) -> u32;
 
     /// The number of cells: the exclusive upper bound of [`Graph::cell`].
     fn cells(&self) -> usize;
@@ -51,4 +51,21 @@ pub trait Graph: Sync {
 
     /// Bounds of the weights and their fixed-point scale.
     fn weight_range(&self) -> WeightRange;
+
+    /// Calls `visitor` with this graph, or with one that has the same nodes and edges and is faster to search.
+    fn accept<V: GraphVisitor>(&self, visitor: V) -> V::Output
+    where
+        Self: Sized,
+    {
+        visitor.visit(self)
+    }
+}
+
+/// A computation on a graph whose type it does not know.
+pub trait GraphVisitor {
+    /// What it computes.
+    type Output;
+
+    /// Computes it.
+    fn visit<G: Graph>(self, graph: &G) -> Self::Output;
 }

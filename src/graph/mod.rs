@@ -9,6 +9,7 @@ mod edge;
 mod field;
 mod field_spec;
 mod lattice;
+mod lattice_edges;
 mod mask;
 mod poisson;
 mod scatter;
@@ -20,7 +21,7 @@ mod window;
 mod yao;
 
 pub use cost_field::{CostField, FieldFunction, Measure};
-pub use edge::{Edge, Graph, Node};
+pub use edge::{Edge, Graph, GraphVisitor, Node};
 pub use field::{FieldTable, FieldValue};
 pub use field_spec::{FieldSpec, FieldUse, HeightEnd, MeasureSpec};
 pub use lattice::Lattice;

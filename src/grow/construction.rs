@@ -39,9 +39,9 @@ fn middle(step: &Step) -> DVec3 {
 ///
 /// # Errors
 /// [`Problem::TooManyMarks`].
-pub(super) fn lattice_marks<const N: usize>(
+pub(super) fn lattice_marks(
     step: &Step,
-    lattice: &Lattice<N>,
+    lattice: &Lattice,
     tree: &dyn PathTree,
     endpoints: &[Node],
     show: &[MarkKind],
@@ -125,7 +125,7 @@ fn few_enough(count: u64, is_edges: bool) -> Result<(), Problem> {
 }
 
 /// Lines of equal cost on the plane, or on the upright plane through a point.
-pub(super) fn cost_contours<const N: usize>(plan: &Plan<'_, Lattice<N>>, through: DVec3) -> Vec<Vec<DVec3>> {
+pub(super) fn cost_contours(plan: &Plan<'_, Lattice>, through: DVec3) -> Vec<Vec<DVec3>> {
     let lattice = plan.graph();
     let window = lattice.window();
     let range = lattice.weight_range();

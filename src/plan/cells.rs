@@ -6,7 +6,7 @@ use bytemuck::allocation::zeroed_slice_box;
 
 use crate::graph::Graph;
 
-/// One cell a node: `cost << SLOT_BITS | slot + 1`, the cost modulo the remaining bits.
+/// One cell a node: `cost << slot_bits | slot + 1`, the cost modulo the remaining bits.
 ///
 /// 0 is a node not yet reached, so that untouched pages of memory are never allocated. A generator has slot bits 0 and a cost
 /// above 0. Costs are compared modulo 2^32: neighbours differ by at most the largest weight, far below half of that.
@@ -15,8 +15,9 @@ pub(super) struct Cells {
 }
 
 /// The bits of a cell that hold the slot.
-pub(super) const fn slot_mask<G: Graph>() -> u32 {
-    (1 << G::SLOT_BITS) - 1
+#[inline(always)]
+pub(super) fn slot_mask(graph: &impl Graph) -> u32 {
+    (1 << graph.slot_bits()) - 1
 }
 
 /// Difference by which an unreached node is above every cost that is compared with it.

@@ -112,9 +112,9 @@ impl<G: Graph> Front<'_, G> {
             graph.ahead(cell, |cell| cells.prefetch(cell));
         }
         let mut relax = |node: Node, value: u32, is_shared: bool| {
-            let cost = value & !slot_mask::<G>();
+            let cost = value & !slot_mask(graph);
             graph.edges(node, |edge| {
-                let new = cost.wrapping_add(edge.weight << G::SLOT_BITS) | (edge.back + 1);
+                let new = cost.wrapping_add(edge.weight << graph.slot_bits()) | (edge.back + 1);
                 let old = if is_shared { cells.lower_shared(edge.cell, new) } else { cells.lower(edge.cell, new) };
                 // A node is pushed when its cost falls into a lower bucket.
                 let above = old.wrapping_sub(new & !waiting) as i32 > waiting as i32;

@@ -6,7 +6,7 @@ use super::cells::Cells;
 use super::front::{BucketWidth, Front, WantedNodes};
 use super::shared;
 use super::tree::Plan;
-use crate::graph::{Graph, Node};
+use crate::graph::{Graph, GraphVisitor, Node};
 use crate::math::{Cancelled, Progress};
 
 /// Most threads: more would wait for each other more than they work.
@@ -39,12 +39,14 @@ pub fn bytes_needed(cells: u64) -> u64 {
 /// Wide fronts are shared among the threads of the current rayon pool ([`Graph::is_wide`]); the result is the same.
 ///
 /// ```
+/// use lichtenberg::geom::Neighbours;
 /// use lichtenberg::graph::{Lattice, Window};
 /// use lichtenberg::math::{DVec3, Progress, Stream, Weights};
 /// use lichtenberg::plan::{Goal, plan};
 ///
 /// let window = Window::new(DVec3::ZERO, DVec3::splat(20.0), 1.0, 3)?;
-/// let lattice: Lattice<6> = Lattice::plain(window, &Stream::new(7, "air"), Weights::default())?;
+/// let six = Neighbours::try_from(6)?;
+/// let lattice = Lattice::plain(window, six, &Stream::new(7, "air"), Weights::default())?;
 /// let (root, end) = (lattice.node([0, 0, 0]), lattice.node([20, 20, 20]));
 /// let plan = plan(&lattice, &[root], Goal::Nodes(&[end]), &Progress::default())?;
 /// let path: Vec<_> = plan.path(end).collect();
@@ -117,35 +119,65 @@ pub(super) fn plan_on<'g, G: Graph>(
     progress: &Progress,
 ) -> Result<Plan<'g, G>, PlanError> {
     debug_assert!(later.nodes.is_empty() || threads == 1);
-    let width = BucketWidth::new(graph.weight_range(), G::SLOT_BITS)?;
-    let cells = Cells::new(graph.cells());
+    let (cells, settled, farthest) = graph.accept(Search { generators, later, goal, threads, progress })?;
+    Ok(Plan::new(graph, cells, settled, farthest))
+}
+
+/// A search of a graph for cells, the number of nodes settled and an upper bound of all costs.
+struct Search<'a> {
+    generators: &'a [Node],
+    later: Later<'a>,
+    goal: Goal<'a>,
+    threads: usize,
+    progress: &'a Progress,
+}
+
+impl GraphVisitor for Search<'_> {
+    type Output = Result<(Cells, usize, u64), PlanError>;
+
+    fn visit<G: Graph>(self, graph: &G) -> Self::Output {
+        let Self { generators, later, goal, threads, progress } = self;
+        let cells = Cells::new(graph.cells());
+        let (front, buckets) = first_front(graph, &cells, generators)?;
+        let front = Front { waiting: front.width.within(), ..front };
+        let (wanted, most) = match goal {
+            Goal::Everything => (None, u64::MAX),
+            Goal::Nodes(nodes) => (Some(nodes), u64::MAX),
+            Goal::Within(most) => (None, most),
+        };
+        let (settled, farthest) = if threads > 1 && most == u64::MAX {
+            // Rounded down to a power of two.
+            (shared::run(front, buckets, wanted, 1 << threads.ilog2(), progress)?, u64::MAX)
+        } else {
+            // Costs are compared modulo 2^32, which bounds the difference between a generator and its neighbours.
+            let latest = 1_u64 << (30 - graph.slot_bits());
+            let mut nodes: Vec<(Node, u64)> =
+                later.nodes.iter().map(|&(node, cost)| (node, cost.min(latest))).collect();
+            nodes.sort_unstable_by_key(|&(node, cost)| (cost, node));
+            run_alone(&front, buckets, Later { nodes: &nodes, ..later }, (WantedNodes::new(wanted), most), progress)?
+        };
+        Ok((cells, settled, farthest))
+    }
+}
+
+/// The front at `generators`, and the bucket of those that were none before.
+fn first_front<'a, G: Graph>(
+    graph: &'a G,
+    cells: &'a Cells,
+    generators: &[Node],
+) -> Result<(Front<'a, G>, Buckets), PlanError> {
+    let width = BucketWidth::new(graph.weight_range(), graph.slot_bits())?;
     let mut buckets = Buckets::new(width.count());
     // Cost 1, since a cell of 0 means unreached.
-    let start = 1 << G::SLOT_BITS;
+    let start = 1 << graph.slot_bits();
     for &generator in generators {
         let cell = graph.cell(generator);
-        if cells.get(cell) == 0 {
+        if cells.get(cell) != start {
             cells.set(cell, start);
             buckets.push_if(true, width.bucket(start), generator);
         }
     }
-    let (wanted, most) = match goal {
-        Goal::Everything => (None, u64::MAX),
-        Goal::Nodes(nodes) => (Some(nodes), u64::MAX),
-        Goal::Within(most) => (None, most),
-    };
-    let front = Front { graph, cells: &cells, width, start, waiting: width.within() };
-    let (settled, farthest) = if threads > 1 && most == u64::MAX {
-        // Rounded down to a power of two.
-        (shared::run(front, buckets, wanted, 1 << threads.ilog2(), progress)?, u64::MAX)
-    } else {
-        // Costs are compared modulo 2^32, which bounds the difference between a generator and its neighbours.
-        let latest = 1_u64 << (30 - G::SLOT_BITS);
-        let mut nodes: Vec<(Node, u64)> = later.nodes.iter().map(|&(node, cost)| (node, cost.min(latest))).collect();
-        nodes.sort_unstable_by_key(|&(node, cost)| (cost, node));
-        run_alone(&front, buckets, Later { nodes: &nodes, ..later }, (WantedNodes::new(wanted), most), progress)?
-    };
-    Ok(Plan::new(graph, cells, settled, farthest))
+    Ok((Front { graph, cells, width, start, waiting: 0 }, buckets))
 }
 
 impl<G: Graph> Plan<'_, G> {
@@ -161,18 +193,23 @@ impl<G: Graph> Plan<'_, G> {
             *self = plan_on(graph, generators, Later::NONE, Goal::Everything, 1, progress)?;
             return Ok(());
         }
-        let width = BucketWidth::new(graph.weight_range(), G::SLOT_BITS)?;
-        let mut buckets = Buckets::new(width.count());
-        let start = 1 << G::SLOT_BITS;
-        for &generator in generators {
-            let cell = graph.cell(generator);
-            if cells.get(cell) != start {
-                cells.set(cell, start);
-                buckets.push_if(true, width.bucket(start), generator);
-            }
-        }
-        let front = Front { graph, cells, width, start, waiting: 0 };
-        run_alone(&front, buckets, Later::NONE, (WantedNodes::new(None), u64::MAX), progress)?;
+        graph.accept(Extension { cells, generators, progress })
+    }
+}
+
+/// A search that goes on in known cells.
+struct Extension<'a> {
+    cells: &'a Cells,
+    generators: &'a [Node],
+    progress: &'a Progress,
+}
+
+impl GraphVisitor for Extension<'_> {
+    type Output = Result<(), PlanError>;
+
+    fn visit<G: Graph>(self, graph: &G) -> Self::Output {
+        let (front, buckets) = first_front(graph, self.cells, self.generators)?;
+        run_alone(&front, buckets, Later::NONE, (WantedNodes::new(None), u64::MAX), self.progress)?;
         Ok(())
     }
 }
@@ -189,20 +226,21 @@ fn run_alone<G: Graph>(
     let (mut wanted, most) = until;
     let Later { nodes: mut later, gives_way } = later;
     let Front { graph, cells, width, start, .. } = *front;
+    let slot_bits = graph.slot_bits();
     let mut settled = 0;
     let mut base = width.base(start);
     // The start of the next bucket, not wrapped.
     let mut end = u64::from(width.next(base));
     // Consecutive empty buckets: after a full cycle the queue is empty.
     let mut idle = 0;
-    let limit = most.saturating_mul(1 << G::SLOT_BITS).saturating_add(u64::from(start));
+    let limit = most.saturating_mul(1 << slot_bits).saturating_add(u64::from(start));
     for turn in 0_u32.. {
         while let Some((&(node, cost), rest)) =
-            later.split_first().filter(|(first, _)| u64::from(start) + (first.1 << G::SLOT_BITS) < end)
+            later.split_first().filter(|(first, _)| u64::from(start) + (first.1 << slot_bits) < end)
         {
             later = rest;
             // A wrapped cost; 0 would mean unreached.
-            let value = (u64::from(start) + (cost << G::SLOT_BITS)) as u32;
+            let value = (u64::from(start) + (cost << slot_bits)) as u32;
             let old = cells.get(graph.cell(node));
             if gives_way && old != 0 && (old.wrapping_sub(value) as i32) < 0 {
                 continue;

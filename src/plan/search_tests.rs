@@ -7,14 +7,22 @@ use proptest::prelude::*;
 
 use super::search::{Later, plan_on};
 use super::*;
+use crate::geom::Neighbours;
 use crate::graph::{FieldValue, Graph, Lattice, Mask, Node, Window};
 use crate::math::{DVec3, Progress, Stream, Weights};
 
+fn joined(count: u32) -> Neighbours {
+    Neighbours::try_from(count).unwrap()
+}
+
 type Field = ([bool; 3], fn(DVec3) -> FieldValue);
 
-fn lattice<const N: usize>(size: [u32; 3], seed: u64, alpha: f64, field: bool, holes: bool) -> Lattice<N> {
-    let window =
-        Window { spacing: 1.0, origin: [-3, 5, -7], size: if N == 4 || N == 8 { [size[0], size[1], 1] } else { size } };
+fn lattice(neighbours: Neighbours, size: [u32; 3], seed: u64, alpha: f64, field: bool, holes: bool) -> Lattice {
+    let window = Window {
+        spacing: 1.0,
+        origin: [-3, 5, -7],
+        size: if neighbours.is_plane() { [size[0], size[1], 1] } else { size },
+    };
     let field: Option<Field> =
         field.then_some(([true, false, true], |p| FieldValue { sum: p.x.abs() * 0.7, factor: 0.5 + p.z.abs() * 0.1 }));
     let mask = holes.then(|| {
@@ -22,7 +30,7 @@ fn lattice<const N: usize>(size: [u32; 3], seed: u64, alpha: f64, field: bool, h
             (0..window.nodes().div_ceil(64)).map(|w| crate::math::mix(seed ^ w) & crate::math::mix(seed ^ !w) & !1);
         Mask::from_words(words.collect(), window.nodes() as usize)
     });
-    Lattice::new(window, &Stream::new(seed, "test"), Weights { max: 10.0, alpha }, field, mask).unwrap()
+    Lattice::new(window, neighbours, &Stream::new(seed, "test"), Weights { max: 10.0, alpha }, field, mask).unwrap()
 }
 
 /// Dijkstra's algorithm (1959) with a binary heap; it shares only the graph with the search.
@@ -43,8 +51,8 @@ fn dijkstra<G: Graph>(graph: &G, generators: &[Node]) -> HashMap<Node, u64> {
     costs
 }
 
-fn check<const N: usize>(size: [u32; 3], seed: u64, alpha: f64, field: bool, holes: bool) {
-    let lattice = lattice::<N>(size, seed, alpha, field, holes);
+fn check(neighbours: Neighbours, size: [u32; 3], seed: u64, alpha: f64, field: bool, holes: bool) {
+    let lattice = lattice(neighbours, size, seed, alpha, field, holes);
     let nodes: Vec<Node> = lattice.nodes().collect();
     let generators = [nodes[0], nodes[nodes.len() / 2]];
     let all = plan(&lattice, &generators, Goal::Everything, &Progress::default()).unwrap();
@@ -93,11 +101,9 @@ proptest! {
         x in 1..14_u32, y in 1..14_u32, z in 1..14_u32, seed: u64, alpha in 0.0..4.0, field: bool, holes: bool
     ) {
         let size = [x, y, z];
-        check::<4>(size, seed, alpha, field, holes);
-        check::<8>(size, seed, alpha, field, holes);
-        check::<6>(size, seed, alpha, field, holes);
-        check::<18>(size, seed, alpha, field, holes);
-        check::<26>(size, seed, alpha, field, holes);
+        for count in [4, 8, 6, 18, 26] {
+            check(joined(count), size, seed, alpha, field, holes);
+        }
     }
 }
 
@@ -106,8 +112,9 @@ proptest! {
 fn costs_may_exceed_a_cell() {
     let window = Window { spacing: 1.0, origin: [0; 3], size: [3000, 2, 2] };
     let costly: Option<Field> = Some(([true, false, false], |_| FieldValue { sum: 60.0, factor: 1.0 }));
-    let lattice: Lattice<26> =
-        Lattice::new(window, &Stream::new(1, "long"), Weights { max: 10.0, alpha: 1.0 }, costly, None).unwrap();
+    let lattice =
+        Lattice::new(window, joined(26), &Stream::new(1, "long"), Weights { max: 10.0, alpha: 1.0 }, costly, None)
+            .unwrap();
     let (root, end) = (lattice.node([0, 0, 0]), lattice.node([2999, 1, 1]));
     let expected = dijkstra(&lattice, &[root]);
     assert!(expected[&end] > 1 << 29, "the test wants a wrap: {}", expected[&end]);
@@ -121,9 +128,9 @@ fn costs_may_exceed_a_cell() {
 #[test]
 fn a_resize_keeps_weights() {
     let weights = Weights { max: 10.0, alpha: 2.0 };
-    let make = |origin, size| -> Lattice<18> {
+    let make = |origin, size| -> Lattice {
         let window = Window { spacing: 0.5, origin, size };
-        Lattice::new(window, &Stream::new(7, "resize"), weights, None::<Field>, None).unwrap()
+        Lattice::new(window, joined(18), &Stream::new(7, "resize"), weights, None::<Field>, None).unwrap()
     };
     let (small, large) = (make([0; 3], [4; 3]), make([-5, -9, -2], [40, 30, 20]));
     for node in small.nodes() {
@@ -143,8 +150,9 @@ fn a_resize_keeps_weights() {
 #[test]
 fn weights_are_independent() {
     let window = Window { spacing: 1.0, origin: [-100, -100, 0], size: [256, 256, 1] };
-    let lattice: Lattice<4> =
-        Lattice::new(window, &Stream::new(3, "chi"), Weights { max: 5.0, alpha: 1.0 }, None::<Field>, None).unwrap();
+    let lattice =
+        Lattice::new(window, joined(4), &Stream::new(3, "chi"), Weights { max: 5.0, alpha: 1.0 }, None::<Field>, None)
+            .unwrap();
     let quartile = |weight: u32| ((weight - 4096) / 4096).min(3) as usize;
     for step in [[1, 0], [0, 1], [1, 1], [2, 1]] {
         let mut bins = [[0_u32; 4]; 4];
@@ -169,8 +177,8 @@ fn weights_are_independent() {
 #[test]
 fn too_wide_a_range_is_refused() {
     let window = Window { spacing: 1.0, origin: [0; 3], size: [9, 9, 1] };
-    let lattice = |alpha| -> Result<Lattice<4>, _> {
-        Lattice::new(window, &Stream::new(1, "wide"), Weights { max: 10.0, alpha }, None::<Field>, None)
+    let lattice = |alpha| -> Result<Lattice, _> {
+        Lattice::new(window, joined(4), &Stream::new(1, "wide"), Weights { max: 10.0, alpha }, None::<Field>, None)
     };
     assert!(lattice(1000.0).is_err());
     let steep = lattice(5.7).unwrap();
@@ -181,7 +189,7 @@ fn too_wide_a_range_is_refused() {
 #[test]
 fn searches_go_on_and_stop() {
     for (seed, holes, alpha) in [(1, false, 1.0), (2, true, 3.0), (3, true, 1.0)] {
-        let lattice = lattice::<8>([120, 90, 1], seed, alpha, false, holes);
+        let lattice = lattice(Neighbours::EIGHT, [120, 90, 1], seed, alpha, false, holes);
         let nodes: Vec<Node> = lattice.nodes().collect();
         let mut generators = vec![nodes[nodes.len() / 3]];
         let mut grown = plan(&lattice, &generators, Goal::Everything, &Progress::default()).unwrap();
@@ -205,7 +213,7 @@ fn searches_go_on_and_stop() {
 /// A start that costs more than its least-cost path is no generator.
 #[test]
 fn costly_starts_give_way() {
-    let lattice = lattice::<8>([60, 50, 1], 4, 1.0, false, false);
+    let lattice = lattice(Neighbours::EIGHT, [60, 50, 1], 4, 1.0, false, false);
     let nodes: Vec<Node> = lattice.nodes().collect();
     let starts: Vec<(Node, u64)> =
         nodes.iter().step_by(97).enumerate().map(|(i, &n)| (n, (i as u64 % 5) << 19)).collect();

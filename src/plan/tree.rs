@@ -43,7 +43,7 @@ impl<'g, G: Graph> Plan<'g, G> {
     /// unreached node.
     #[must_use]
     pub fn predecessor(&self, node: Node) -> Option<(Node, u32)> {
-        let slot = self.cells.get(self.graph.cell(node)) & slot_mask::<G>();
+        let slot = self.cells.get(self.graph.cell(node)) & slot_mask(self.graph);
         if slot == 0 {
             return None;
         }

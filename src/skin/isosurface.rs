@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::geom::{Bounds, Surface, fill, with_neighbours};
-use crate::graph::{Graph, Lattice, LatticeError, Node, Window};
+use crate::geom::{Bounds, Surface, fill};
+use crate::graph::{Graph, LatticeError, Node, Window};
 use crate::grow::LatticeSpace;
 use crate::math::{Cancelled, DVec2, DVec3, Progress};
 use crate::plan::{Goal, PlanError, mean_cost, plan_from};
@@ -117,7 +117,7 @@ pub fn isosurface(
             if nodes > MOST_SAMPLES {
                 return Err(IsosurfaceError::TooManyNodes(nodes));
             }
-            with_neighbours!(space.neighbours, by_cost(space, skeletons, spec, seed, progress))
+            by_cost(space, skeletons, spec, seed, progress)
         }
     }
 }
@@ -206,16 +206,16 @@ fn distances(window: Window, skeletons: &[&Skeleton], progress: &Progress) -> Re
 
 /// The surface of all that costs no more than its width from the limbs: half a unit of the last place above, so that no node
 /// is on it.
-fn by_cost<const N: usize>(
+fn by_cost(
     space: &LatticeSpace,
     skeletons: &[&Skeleton],
     spec: &IsosurfaceSpec,
     seed: u64,
     progress: &Progress,
 ) -> Result<Surface, IsosurfaceError> {
-    let lattice: Lattice<N> = space.lattice(seed).map_err(IsosurfaceError::Lattice)?;
+    let lattice = space.lattice(seed).map_err(IsosurfaceError::Lattice)?;
     let range = lattice.weight_range();
-    let mean = mean_cost::<N>(space.weights).map_err(IsosurfaceError::Lattice)?;
+    let mean = mean_cost(space.neighbours, space.weights).map_err(IsosurfaceError::Lattice)?;
     // Costs of a length, in fixed point.
     let scale = mean / space.window.spacing * f64::from(1_u32 << range.fraction);
     let widest = skeletons.iter().flat_map(|s| &s.nodes).map(|n| n.radius).fold(0.0, f64::max);

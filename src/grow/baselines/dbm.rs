@@ -7,14 +7,13 @@ use rand::RngExt;
 
 use super::laplace::Laplace;
 use super::spec::{DbmSpec, SIDE, Solver};
-use crate::geom::with_neighbours;
 use crate::graph::{Graph, Lattice, Node};
 use crate::grow::error::{GrowError, Key, Problem};
 use crate::grow::grown::Grown;
 use crate::grow::lookup::Lookup;
 use crate::grow::paths::refined;
 use crate::grow::site::Site;
-use crate::grow::spaces::{LatticeSpace, OnLattice};
+use crate::grow::spaces::OnLattice;
 use crate::grow::spec::StepSpec;
 use crate::grow::starts::starts;
 use crate::grow::step::{Context, Method, Step, Unreached};
@@ -36,34 +35,26 @@ impl Method for DbmSpec {
 
     fn grow(&self, step: &Step, context: &Context<'_>) -> Result<Grown, GrowError> {
         let space = step.lattice()?;
-        with_neighbours!(space.neighbours, grow_on(self, step, space, context))
+        let mut site = OnLattice::new(step, space, context)?;
+        let generators: Vec<Node> = starts(step, &mut site, context)?.into_iter().map(|(node, _)| node).collect();
+        let (targets, _) = targets(step, &mut site, context)?;
+        let ends: Vec<(Node, u16)> = targets.iter().map(|target| (target.node, target.set.class)).collect();
+        let random = Stream::new(context.seed, &format!("dbm/{}", step.name));
+        let classes = step.classes.clone();
+        let (skeleton, settled) =
+            self.grow_cluster(&site.lattice, &generators, &ends, classes, random, context.progress)?;
+        let has_end = skeleton.paths.first().is_some_and(|path| step.classes[path.class as usize] != SIDE);
+        if !has_end && self.solver == Solver::Grid && step.unreached == Unreached::Error {
+            return Err(step.error(Key::Method, Problem::NoTouch(self.nodes)));
+        }
+        let skeleton = refined(step, skeleton, space, context)?;
+        let [nodes, edges] = site.size();
+        step.finish_with(Grown { nodes, edges, settled, ..Grown::default() }, skeleton, context)
     }
 
     fn bytes_needed(&self, step: &Step) -> u64 {
         step.lattice().map_or(0, |space| space.bytes_with_paths(step.count_paths(), 0))
     }
-}
-
-fn grow_on<const N: usize>(
-    dbm: &DbmSpec,
-    step: &Step,
-    space: &LatticeSpace,
-    context: &Context<'_>,
-) -> Result<Grown, GrowError> {
-    let mut site = OnLattice::<N>::new(step, space, context)?;
-    let generators: Vec<Node> = starts(step, &mut site, context)?.into_iter().map(|(node, _)| node).collect();
-    let (targets, _) = targets(step, &mut site, context)?;
-    let ends: Vec<(Node, u16)> = targets.iter().map(|target| (target.node, target.set.class)).collect();
-    let random = Stream::new(context.seed, &format!("dbm/{}", step.name));
-    let classes = step.classes.clone();
-    let (skeleton, settled) = dbm.grow_cluster(&site.lattice, &generators, &ends, classes, random, context.progress)?;
-    let has_end = skeleton.paths.first().is_some_and(|path| step.classes[path.class as usize] != SIDE);
-    if !has_end && dbm.solver == Solver::Grid && step.unreached == Unreached::Error {
-        return Err(step.error(Key::Method, Problem::NoTouch(dbm.nodes)));
-    }
-    let skeleton = refined(step, skeleton, space, context)?;
-    let [nodes, edges] = site.size();
-    step.finish_with(Grown { nodes, edges, settled, ..Grown::default() }, skeleton, context)
 }
 
 impl DbmSpec {
@@ -78,9 +69,9 @@ impl DbmSpec {
 
     /// Grows from `generators` until an end is touched: the skeleton, with the path to that end first, and how many
     /// nodes grew. Every tip ends a path, those in the open of class [`SIDE`].
-    fn grow_cluster<const N: usize>(
+    fn grow_cluster(
         &self,
-        lattice: &Lattice<N>,
+        lattice: &Lattice,
         generators: &[Node],
         ends: &[(Node, u16)],
         classes: Vec<String>,
@@ -161,9 +152,9 @@ impl DbmSpec {
         candidates.len() - 1
     }
 
-    fn skeleton<const N: usize>(
+    fn skeleton(
         &self,
-        lattice: &Lattice<N>,
+        lattice: &Lattice,
         grown: &[(Node, Option<u32>)],
         reached: Option<u32>,
         ends: &HashMap<Node, u16>,

@@ -4,14 +4,13 @@
 use rand::RngExt;
 
 use super::spec::{DlaSpec, Walk};
-use crate::geom::with_neighbours;
 use crate::graph::{Graph, Lattice, Node};
 use crate::grow::error::GrowError;
 use crate::grow::grown::Grown;
 use crate::grow::lookup::Lookup;
 use crate::grow::site::Site;
 use crate::grow::space::Space;
-use crate::grow::spaces::{LatticeSpace, OnLattice};
+use crate::grow::spaces::OnLattice;
 use crate::grow::starts::starts;
 use crate::grow::step::{Context, Method, Step};
 use crate::math::{Cancelled, DVec3, Progress, Stream, from_height};
@@ -172,27 +171,18 @@ impl Method for DlaSpec {
 
     fn grow(&self, step: &Step, context: &Context<'_>) -> Result<Grown, GrowError> {
         let space = step.lattice()?;
-        with_neighbours!(space.neighbours, grow_on(self, step, space, context))
+        let mut site = OnLattice::new(step, space, context)?;
+        let generators: Vec<Node> = starts(step, &mut site, context)?.into_iter().map(|(node, _)| node).collect();
+        let random = Stream::new(context.seed, &format!("dla/{}", step.name));
+        let skeleton = self.aggregate(&site.lattice, &generators, step.classes.clone(), random, context.progress)?;
+        let settled = skeleton.nodes.len() as u64;
+        let [nodes, edges] = site.size();
+        step.finish_with(Grown { nodes, edges, settled, ..Grown::default() }, skeleton, context)
     }
 
     fn bytes_needed(&self, step: &Step) -> u64 {
         step.lattice().map_or(0, |space| space.bytes_with_paths(0, 5))
     }
-}
-
-fn grow_on<const N: usize>(
-    dla: &DlaSpec,
-    step: &Step,
-    space: &LatticeSpace,
-    context: &Context<'_>,
-) -> Result<Grown, GrowError> {
-    let mut site = OnLattice::<N>::new(step, space, context)?;
-    let generators: Vec<Node> = starts(step, &mut site, context)?.into_iter().map(|(node, _)| node).collect();
-    let random = Stream::new(context.seed, &format!("dla/{}", step.name));
-    let skeleton = dla.aggregate(&site.lattice, &generators, step.classes.clone(), random, context.progress)?;
-    let settled = skeleton.nodes.len() as u64;
-    let [nodes, edges] = site.size();
-    step.finish_with(Grown { nodes, edges, settled, ..Grown::default() }, skeleton, context)
 }
 
 impl DlaSpec {
@@ -208,9 +198,9 @@ impl DlaSpec {
     }
 
     /// Grows around `generators`; the skeleton, in which every tip ends a path.
-    fn aggregate<const N: usize>(
+    fn aggregate(
         &self,
-        lattice: &Lattice<N>,
+        lattice: &Lattice,
         generators: &[Node],
         classes: Vec<String>,
         mut random: Stream,
@@ -284,9 +274,9 @@ impl DlaSpec {
     }
 
     /// A walk along the lattice until it is next to what has grown: the place, and the particle beside it.
-    fn walk_lattice<const N: usize>(
+    fn walk_lattice(
         &self,
-        lattice: &Lattice<N>,
+        lattice: &Lattice,
         cluster: &Cluster,
         random: &mut Stream,
         progress: &Progress,
@@ -326,7 +316,7 @@ impl DlaSpec {
                     continue;
                 }
             }
-            let step = steps[random.random_range(0..N)];
+            let step = steps[random.random_range(0..steps.len())];
             let next = [0, 1, 2].map(|axis| at[axis] + i64::from(step[axis]));
             let is_inside = self.walk == Walk::Fast || cluster.index(next).is_some();
             stuck += 1;

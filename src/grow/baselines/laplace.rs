@@ -26,7 +26,7 @@ pub(super) struct Laplace {
 
 impl Laplace {
     /// The field of `generators` against `ends`.
-    pub fn new<const N: usize>(lattice: &Lattice<N>, generators: &[Node], ends: impl Iterator<Item = Node>) -> Self {
+    pub fn new(lattice: &Lattice, generators: &[Node], ends: impl Iterator<Item = Node>) -> Self {
         let size = lattice.window().size.map(|s| s as usize);
         let axes = if lattice.is_plane() { 2 } else { 3 };
         let strides: Vec<usize> = [1, size[0], size[0] * size[1]][..axes].to_vec();
@@ -193,6 +193,7 @@ impl Laplace {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geom::Neighbours;
     use crate::graph::Window;
     use crate::math::Weights;
     use crate::math::{DVec3, Stream};
@@ -201,7 +202,8 @@ mod tests {
     #[test]
     fn is_linear_between_plates() {
         let window = Window::new(DVec3::ZERO, DVec3::new(12.0, 20.0, 0.0), 1.0, 2).unwrap();
-        let lattice: Lattice<4> = Lattice::plain(window, &Stream::new(1, "plates"), Weights::default()).unwrap();
+        let four = Neighbours::try_from(4).unwrap();
+        let lattice = Lattice::plain(window, four, &Stream::new(1, "plates"), Weights::default()).unwrap();
         let row = |y: u32| (0..13).map(move |x| [x, y, 0]).collect::<Vec<_>>();
         let low: Vec<Node> = row(0).into_iter().map(|at| lattice.node(at)).collect();
         let high = row(20).into_iter().map(|at| lattice.node(at));

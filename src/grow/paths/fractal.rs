@@ -7,7 +7,6 @@ use rustc_hash::FxHashMap;
 
 use super::fractal_spec::{FractalSpec, Vicinity};
 use super::refine::refined;
-use crate::geom::with_neighbours;
 use crate::graph::{Graph, Lattice, Node};
 use crate::grow::choice::in_random_order;
 use crate::grow::crowd::Crowd;
@@ -17,7 +16,7 @@ use crate::grow::grown::Grown;
 use crate::grow::lookup::Lookup;
 use crate::grow::rules::{MOST_DENSE, Needs, Rules};
 use crate::grow::site::Site;
-use crate::grow::spaces::{LatticeSpace, OnLattice};
+use crate::grow::spaces::OnLattice;
 use crate::grow::spec::StepSpec;
 use crate::grow::starts::{Placed, starts};
 use crate::grow::step::{Context, Method, Step};
@@ -63,7 +62,7 @@ impl Nearness {
 
     /// Takes in what has `grown` since, up to a squared distance. Each node hands on which node is nearest to it, along
     /// edges, so that what is forbidden is gone around.
-    fn grow<const N: usize>(&mut self, lattice: &Lattice<N>, grown: &[Node], most: u32) {
+    fn grow(&mut self, lattice: &Lattice, grown: &[Node], most: u32) {
         let mut queue: VecDeque<Node> = VecDeque::new();
         for &node in grown {
             let cell = lattice.cell(node);
@@ -100,7 +99,13 @@ impl Method for FractalSpec {
 
     fn grow(&self, step: &Step, context: &Context<'_>) -> Result<Grown, GrowError> {
         let space = step.lattice()?;
-        with_neighbours!(space.neighbours, grow_on(self, step, space, context))
+        let mut site = OnLattice::new(step, space, context)?;
+        let starts = starts(step, &mut site, context)?;
+        let mut growth = FractalGrowth::new(self, step, &site.lattice, &starts)?;
+        let settled = growth.iterate(&starts, context)?;
+        let skeleton = refined(step, growth.skeleton, space, context)?;
+        let [nodes, edges] = site.size();
+        step.finish_with(Grown { nodes, edges, settled, ..Grown::default() }, skeleton, context)
     }
 
     fn bytes_needed(&self, step: &Step) -> u64 {
@@ -109,26 +114,11 @@ impl Method for FractalSpec {
     }
 }
 
-fn grow_on<const N: usize>(
-    fractal: &FractalSpec,
-    step: &Step,
-    space: &LatticeSpace,
-    context: &Context<'_>,
-) -> Result<Grown, GrowError> {
-    let mut site = OnLattice::<N>::new(step, space, context)?;
-    let starts = starts(step, &mut site, context)?;
-    let mut growth = FractalGrowth::new(fractal, step, &site.lattice, &starts)?;
-    let settled = growth.iterate(&starts, context)?;
-    let skeleton = refined(step, growth.skeleton, space, context)?;
-    let [nodes, edges] = site.size();
-    step.finish_with(Grown { nodes, edges, settled, ..Grown::default() }, skeleton, context)
-}
-
 /// Fractal placement on its way; iterations are levels of the skeleton.
-struct FractalGrowth<'a, const N: usize> {
+struct FractalGrowth<'a> {
     fractal: &'a FractalSpec,
     step: &'a Step,
-    lattice: &'a Lattice<N>,
+    lattice: &'a Lattice,
     distances: Vec<f64>,
     near: Nearness,
     /// The skeleton's node at each cell, or none.
@@ -139,11 +129,11 @@ struct FractalGrowth<'a, const N: usize> {
     fresh: Vec<Node>,
 }
 
-impl<'a, const N: usize> FractalGrowth<'a, N> {
+impl<'a> FractalGrowth<'a> {
     fn new(
         fractal: &'a FractalSpec,
         step: &'a Step,
-        lattice: &'a Lattice<N>,
+        lattice: &'a Lattice,
         starts: &[Placed],
     ) -> Result<Self, GrowError> {
         let spacing = lattice.window().spacing;
@@ -234,7 +224,7 @@ impl<'a, const N: usize> FractalGrowth<'a, N> {
     }
 
     /// Adds the path to `end`, up to where it meets what has grown.
-    fn add(&mut self, plan: &Plan<'_, Lattice<N>>, end: Node, class: u16, level: u16) {
+    fn add(&mut self, plan: &Plan<'_, Lattice>, end: Node, class: u16, level: u16) {
         let lattice = self.lattice;
         let mut path: Vec<(Node, u32)> = Vec::new();
         let mut at = end;
@@ -266,8 +256,8 @@ impl<'a, const N: usize> FractalGrowth<'a, N> {
 }
 
 /// `count` of the nodes in `room` at random, no two nearer than `apart`, in random order; as many as there are.
-fn choose<const N: usize>(
-    lattice: &Lattice<N>,
+fn choose(
+    lattice: &Lattice,
     room: &[Node],
     count: usize,
     apart: f64,
@@ -294,6 +284,7 @@ fn choose<const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geom::Neighbours;
     use crate::graph::Window;
     use crate::math::Weights;
 
@@ -301,7 +292,7 @@ mod tests {
     #[test]
     fn the_field_knows_what_is_near() {
         let window = Window { spacing: 1.0, origin: [0; 3], size: [40, 30, 1] };
-        let lattice: Lattice<8> = Lattice::plain(window, &Stream::new(1, "near"), Weights::default()).unwrap();
+        let lattice = Lattice::plain(window, Neighbours::EIGHT, &Stream::new(1, "near"), Weights::default()).unwrap();
         let mut near = Nearness::new(lattice.cells());
         let mut grown = Vec::new();
         for (round, at) in [[3, 4, 0], [30, 20, 0], [18, 9, 0]].into_iter().enumerate() {

@@ -5,8 +5,7 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 
 use super::refine_spec::Refine;
-use crate::geom::with_neighbours;
-use crate::graph::{Graph, Lattice, Mask, Node, Window};
+use crate::graph::{Graph, Mask, Node, Window};
 use crate::grow::error::{GrowError, Key, Problem};
 use crate::grow::spaces::LatticeSpace;
 use crate::grow::step::{Context, Step};
@@ -28,12 +27,12 @@ pub(in crate::grow) fn refined(
     context: &Context<'_>,
 ) -> Result<Skeleton, GrowError> {
     match &step.refine {
-        Some(refine) => with_neighbours!(space.neighbours, rounds(step, refine, skeleton, space, context)),
+        Some(refine) => rounds(step, refine, skeleton, space, context),
         None => Ok(skeleton),
     }
 }
 
-fn rounds<const N: usize>(
+fn rounds(
     step: &Step,
     refine: &Refine,
     mut skeleton: Skeleton,
@@ -47,7 +46,7 @@ fn rounds<const N: usize>(
         let finer = spacing / f64::from(refine.ratio);
         let work = Round { step, refine, space, seed, spacing: finer, round, progress };
         // Costs stay comparable: each round has `ratio` times as many edges.
-        skeleton = work.apply::<N>(&skeleton, finer / space.window.spacing)?;
+        skeleton = work.apply(&skeleton, finer / space.window.spacing)?;
         spacing = finer;
     }
     Ok(skeleton)
@@ -64,7 +63,7 @@ struct Round<'a> {
 }
 
 impl Round<'_> {
-    fn apply<const N: usize>(&self, coarse: &Skeleton, scale: f64) -> Result<Skeleton, GrowError> {
+    fn apply(&self, coarse: &Skeleton, scale: f64) -> Result<Skeleton, GrowError> {
         let chains = chains(coarse);
         let refined: Result<Vec<Vec<Piece>>, GrowError> = chains
             .par_iter()
@@ -75,7 +74,7 @@ impl Round<'_> {
                     let nodes = chain[start..=end].iter().map(|&i| &coarse.nodes[i as usize]);
                     let first = coarse.nodes[chain[start] as usize].cost;
                     let points = nodes.map(|n| (n.position, (n.cost - first) / scale));
-                    pieces.push(self.piece::<N>(&points.collect::<Vec<_>>())?);
+                    pieces.push(self.piece(&points.collect::<Vec<_>>())?);
                 }
                 Ok(pieces)
             })
@@ -133,7 +132,7 @@ impl Round<'_> {
 
     /// The least-cost way from the first of `points` to the last within sublattices around all of them; beside each is
     /// its cost on the coarse way.
-    fn piece<const N: usize>(&self, points: &[(DVec3, f64)]) -> Result<Piece, GrowError> {
+    fn piece(&self, points: &[(DVec3, f64)]) -> Result<Piece, GrowError> {
         let nodes: Vec<[i32; 3]> = points.iter().map(|&(p, _)| self.at(p)).collect();
         let is_plane = self.space.neighbours.dimensions() == 2;
         let reach = (self.refine.reach * self.refine.ratio) as i32;
@@ -171,7 +170,7 @@ impl Round<'_> {
 
         let stream = format!("{}/{}", self.space.stream, self.round);
         let mask = Mask::from_words(words, window.nodes() as usize);
-        let lattice: Lattice<N> = self
+        let lattice = self
             .space
             .lattice_in(window, &stream, self.seed, Some(mask))
             .map_err(|e| self.wrong(Problem::Lattice(e)))?;

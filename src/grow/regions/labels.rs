@@ -9,7 +9,7 @@ use rustc_hash::FxHashSet;
 
 use super::solid::Regions;
 use super::spec::RegionsSpec;
-use crate::geom::{Shape, Surface, Voxels, fill, with_neighbours};
+use crate::geom::{Shape, Surface, Voxels, fill};
 use crate::graph::{Graph, Lattice, Mask, Node, Window};
 use crate::grow::error::{GrowError, Key, Problem};
 use crate::grow::grown::Grown;
@@ -26,15 +26,15 @@ use crate::skeleton::Skeleton;
 const NONE: u16 = u16::MAX;
 
 /// The nodes of a lattice with the region of each and its cost.
-struct Labelled<'a, const N: usize> {
-    lattice: Cow<'a, Lattice<N>>,
+struct Labelled<'a> {
+    lattice: Cow<'a, Lattice>,
     shape: &'a Shape,
     nodes: Vec<(u16, u32)>,
     /// Where the generators are, in coordinates.
     seeds: Vec<[u32; 3]>,
 }
 
-impl<const N: usize> Labelled<'_, N> {
+impl Labelled<'_> {
     fn cell(&self, [x, y, z]: [u32; 3]) -> usize {
         let [nx, ny, _] = self.lattice.window().size;
         x as usize + nx as usize * (y as usize + ny as usize * z as usize)
@@ -161,7 +161,13 @@ impl Method for RegionsSpec {
 
     fn grow(&self, step: &Step, context: &Context<'_>) -> Result<Grown, GrowError> {
         let space = step.lattice()?;
-        with_neighbours!(space.neighbours, grow_on(self, step, space, context))
+        let mut site = OnLattice::new(step, space, context)?;
+        let starts = starts(step, &mut site, context)?;
+        let generators: Vec<Node> = starts.iter().map(|&(node, _)| node).collect();
+        let (regions, settled) = grow_regions(self, step, space, &site.lattice, &generators, context)?;
+        let [nodes, edges] = site.size();
+        let grown = Grown { nodes, edges, settled, regions: Some(regions), ..Grown::default() };
+        step.finish_with(grown, Skeleton::new(step.classes.clone()), context)
     }
 
     fn bytes_needed(&self, step: &Step) -> u64 {
@@ -175,28 +181,13 @@ impl Method for RegionsSpec {
     }
 }
 
-fn grow_on<const N: usize>(
-    spec: &RegionsSpec,
-    step: &Step,
-    space: &LatticeSpace,
-    context: &Context<'_>,
-) -> Result<Grown, GrowError> {
-    let mut site = OnLattice::<N>::new(step, space, context)?;
-    let starts = starts(step, &mut site, context)?;
-    let generators: Vec<Node> = starts.iter().map(|&(node, _)| node).collect();
-    let (regions, settled) = grow_regions(spec, step, space, &site.lattice, &generators, context)?;
-    let [nodes, edges] = site.size();
-    let grown = Grown { nodes, edges, settled, regions: Some(regions), ..Grown::default() };
-    step.finish_with(grown, Skeleton::new(step.classes.clone()), context)
-}
-
 /// Labels every node with its nearest generator and takes the borders of the regions that are kept; how many nodes were
 /// settled.
-fn grow_regions<const N: usize>(
+fn grow_regions(
     spec: &RegionsSpec,
     step: &Step,
     space: &LatticeSpace,
-    lattice: &Lattice<N>,
+    lattice: &Lattice,
     generators: &[Node],
     context: &Context<'_>,
 ) -> Result<(Regions, u64), GrowError> {
@@ -236,13 +227,13 @@ fn grow_regions<const N: usize>(
 }
 
 /// The regions on a lattice twice as fine, planned again around their borders; elsewhere they stay.
-fn finer<'a, const N: usize>(
+fn finer<'a>(
     step: &Step,
-    coarse: &Labelled<'_, N>,
+    coarse: &Labelled<'_>,
     space: &'a LatticeSpace,
     level: u32,
     context: &Context<'_>,
-) -> Result<Labelled<'a, N>, GrowError> {
+) -> Result<Labelled<'a>, GrowError> {
     let wide = coarse.lattice.window();
     let size = wide.size.map(|s| s * 2 - 1);
     let bits: u32 = size.iter().map(|&s| 32 - (s - 1).leading_zeros()).sum();
@@ -274,7 +265,7 @@ fn finer<'a, const N: usize>(
     let mask = Mask::from_words(words, cells as usize);
     let stream = format!("{}/refine/{level}", space.stream);
     let lattice = space.lattice_in(window, &stream, context.seed, Some(mask));
-    let lattice: Lattice<N> = lattice.map_err(|error| step.error(Key::Weights, Problem::Lattice(error)))?;
+    let lattice = lattice.map_err(|error| step.error(Key::Weights, Problem::Lattice(error)))?;
     // A region too thin for a sure node keeps its generator.
     let seeds: FxHashSet<usize> = coarse.seeds.iter().map(|&at| coarse.cell(at)).collect();
     // Sure coarse nodes start it, with what they cost: a coarse step is two fine ones.

@@ -116,11 +116,11 @@ impl LatticeSpace {
         self.bytes_needed().saturating_add(skeleton).saturating_add(nodes.saturating_mul(each))
     }
 
-    /// The lattice of a scene with this seed. `N` is the number of neighbours.
+    /// The lattice of a scene with this seed.
     ///
     /// # Errors
     /// [`LatticeError`] when no node is open or weights are out of range.
-    pub fn lattice<const N: usize>(&self, seed: u64) -> Result<Lattice<N>, LatticeError> {
+    pub fn lattice(&self, seed: u64) -> Result<Lattice, LatticeError> {
         let mask = self.is_masked().then(|| self.mask());
         if mask.as_ref().is_some_and(|mask| mask.open() == 0) {
             return Err(LatticeError::Empty);
@@ -132,16 +132,15 @@ impl LatticeSpace {
     ///
     /// # Errors
     /// [`LatticeError::Weights`] where weights are out of range.
-    pub(in crate::grow) fn lattice_in<const N: usize>(
+    pub(in crate::grow) fn lattice_in(
         &self,
         window: Window,
         stream: &str,
         seed: u64,
         mask: Option<Mask>,
-    ) -> Result<Lattice<N>, LatticeError> {
-        debug_assert_eq!(N as u32, self.neighbours.count());
+    ) -> Result<Lattice, LatticeError> {
         let field = (!self.fields.is_empty()).then(|| (self.varies(), |p| CostField::combine(&self.fields, p)));
-        Lattice::new(window, &Stream::new(seed, &format!("space/{stream}")), self.weights, field, mask)
+        Lattice::new(window, self.neighbours, &Stream::new(seed, &format!("space/{stream}")), self.weights, field, mask)
     }
 
     fn mask(&self) -> Mask {

@@ -4,7 +4,7 @@ use rand::RngExt;
 use rustc_hash::FxHashSet;
 
 use super::LatticeSpace;
-use crate::geom::{Mark, Shape, with_neighbours};
+use crate::geom::{Mark, Shape};
 use crate::graph::{Graph, Lattice, LatticeError, Node};
 use crate::grow::construction::{cost_contours, lattice_marks};
 use crate::grow::crowd::Crowd;
@@ -17,25 +17,18 @@ use crate::math::{DVec3, Progress, Stream};
 use crate::plan::{Goal, Plan, PlanError, mean_cost, plan, plan_delayed};
 
 /// A lattice in its space.
-pub(in crate::grow) struct OnLattice<'a, const N: usize> {
-    pub lattice: Lattice<N>,
+pub(in crate::grow) struct OnLattice<'a> {
+    pub lattice: Lattice,
     pub space: &'a LatticeSpace,
 }
 
-/// The lattice of `space`, whatever its number of neighbours.
+/// The lattice of `space`.
 pub(in crate::grow) fn on_lattice<'a>(
     step: &Step,
     space: &'a LatticeSpace,
     context: &Context<'_>,
 ) -> Result<Box<dyn PathSite + 'a>, GrowError> {
-    fn boxed<'a, const N: usize>(
-        step: &Step,
-        space: &'a LatticeSpace,
-        context: &Context<'_>,
-    ) -> Result<Box<dyn PathSite + 'a>, GrowError> {
-        Ok(Box::new(OnLattice::<N>::new(step, space, context)?))
-    }
-    with_neighbours!(space.neighbours, boxed(step, space, context))
+    Ok(Box::new(OnLattice::new(step, space, context)?))
 }
 
 /// What is told of a lattice that cannot be made.
@@ -44,8 +37,8 @@ fn lattice_error(step: &Step, error: LatticeError) -> GrowError {
     step.error(key, Problem::Lattice(error))
 }
 
-impl<'a, const N: usize> OnLattice<'a, N> {
-    /// The lattice of `space`, which has `N` neighbours.
+impl<'a> OnLattice<'a> {
+    /// The lattice of `space`.
     pub fn new(step: &Step, space: &'a LatticeSpace, context: &Context<'_>) -> Result<Self, GrowError> {
         let lattice = space.lattice(context.seed).map_err(|error| lattice_error(step, error))?;
         Ok(Self { lattice, space })
@@ -83,7 +76,7 @@ impl<'a, const N: usize> OnLattice<'a, N> {
     }
 }
 
-impl<const N: usize> Site for OnLattice<'_, N> {
+impl Site for OnLattice<'_> {
     fn position(&self, node: Node) -> DVec3 {
         self.lattice.position(node)
     }
@@ -129,10 +122,10 @@ impl<const N: usize> Site for OnLattice<'_, N> {
     }
 }
 
-impl<const N: usize> PathSite for OnLattice<'_, N> {
+impl PathSite for OnLattice<'_> {
     fn cost_over_length(&self, _first: Node, _progress: &Progress) -> Result<[f64; 2], GrowError> {
         // Weights that a lattice was made of are in range.
-        let mean = mean_cost::<N>(self.space.weights).unwrap_or(0.0);
+        let mean = mean_cost(self.space.neighbours, self.space.weights).unwrap_or(0.0);
         let unit = f64::from(1_u32 << self.lattice.weight_range().fraction);
         Ok([mean, self.space.window.spacing / unit])
     }
@@ -164,7 +157,7 @@ impl<const N: usize> PathSite for OnLattice<'_, N> {
     }
 }
 
-impl<const N: usize> PathTree for Plan<'_, Lattice<N>> {
+impl PathTree for Plan<'_, Lattice> {
     fn settled(&self) -> u64 {
         Plan::settled(self) as u64
     }
