@@ -39,11 +39,6 @@ impl Neighbours {
         }
     }
 
-    /// [`Neighbours::new`] in a constant, where another number is a compile-time error.
-    pub(crate) const fn known(count: u32) -> Self {
-        Self::new(count).expect("4, 8, 6, 18 or 26 neighbours")
-    }
-
     /// The number of neighbours of an interior node.
     #[must_use]
     pub const fn count(self) -> u32 {

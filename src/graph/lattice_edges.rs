@@ -27,7 +27,7 @@ impl Lattice {
 impl<const N: u32> Joined<'_, N> {
     #[inline(always)]
     fn neighbours(self) -> Neighbours {
-        if N == ANY { self.0.neighbours } else { const { Neighbours::known(N) } }
+        const { Neighbours::new(N) }.unwrap_or(self.0.neighbours)
     }
 
     #[inline(always)]
