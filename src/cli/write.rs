@@ -58,12 +58,7 @@ pub fn write_pov(pov: &Pov<'_>, folder: &Path, name: &str, force: bool) -> Resul
     let mut written = Written { files: vec![inc], kept: Vec::new() };
     if let Some((sky, strength)) = pov.sky() {
         let path = folder.join(format!("{name}-sky.exr"));
-        write_atomic(&path, |out| {
-            let mut bytes = std::io::Cursor::new(Vec::new());
-            encode_exr(&sky.layers(strength), &mut bytes)?;
-            out.write_all(bytes.get_ref())
-        })
-        .map_err(|e| failure(&path, e))?;
+        write_atomic(&path, |out| out.write_all(&encode_exr(&sky.layers(strength))?)).map_err(|e| failure(&path, e))?;
         written.files.push(path);
     }
     for (text, path) in filled {

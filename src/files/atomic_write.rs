@@ -1,31 +1,36 @@
 //! Atomic writes: a temporary file in the same folder, then a rename.
 
-use std::fs::{self, File};
+use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Writes `path` atomically: `write` fills a temporary file, which replaces `path` only on success.
+use tempfile::NamedTempFile;
+
+use super::Temporary;
+
+/// Links that lead on from each other: more are a circle, as for the system.
+const MOST_LINKS: usize = 40;
+
+/// Writes `path` atomically: `write` fills a temporary file, which replaces `path` only on success, and is then on the disk
+/// itself. A file that is replaced keeps its mode and, where we may, its owner. Through a link its target is written;
+/// pipes and devices are written to.
 ///
 /// # Errors
 /// Those of `write` and of the file system; `path` is then unchanged.
 pub fn write_atomic(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> io::Result<()> {
+    let path = target(path)?;
+    let old = match fs::metadata(&path) {
+        Ok(old) if old.is_dir() => return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")),
+        Ok(old) if !old.is_file() => return fill(&OpenOptions::new().write(true).open(&path)?, write),
+        old => old.ok(),
+    };
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::create_dir_all(folder)?;
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".lichtenberg-");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // As for any new file: the umask applies.
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    let temporary = builder.tempfile_in(folder)?;
-    let mut buffer = BufWriter::with_capacity(1 << 16, temporary.as_file());
-    write(&mut buffer)?;
-    buffer.flush()?;
-    drop(buffer);
-    temporary.persist(path).map_err(|error| error.error)?;
-    Ok(())
+    let (file, temporary) = Temporary::file(|| temporary_in(folder, old.as_ref()))?;
+    fill(&file, write)?;
+    file.sync_all()?;
+    temporary.persist(&path)?;
+    sync_folder(folder)
 }
 
 /// [`write_atomic`] of `bytes`.
@@ -34,6 +39,57 @@ pub fn write_atomic(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io
 /// As [`write_atomic`].
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> io::Result<()> {
     write_atomic(path, |out| out.write_all(bytes))
+}
+
+fn fill(file: &File, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> io::Result<()> {
+    let mut buffer = BufWriter::with_capacity(1 << 16, file);
+    write(&mut buffer)?;
+    buffer.flush()
+}
+
+/// Where links from `path` lead, whether something is there or not.
+fn target(path: &Path) -> io::Result<PathBuf> {
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Ok(next) = fs::read_link(&path) else { return Ok(path) };
+        path = path.parent().unwrap_or(Path::new("")).join(next);
+    }
+    Err(io::Error::other("its links lead in a circle"))
+}
+
+/// A temporary file for one that takes the place of `old`.
+#[cfg(unix)]
+fn temporary_in(folder: &Path, old: Option<&Metadata>) -> io::Result<NamedTempFile> {
+    use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
+    // As for any new file: the umask applies.
+    let new = fs::Permissions::from_mode(0o666);
+    let temporary = tempfile::Builder::new().prefix(".lichtenberg-").permissions(new).tempfile_in(folder)?;
+    if let Some(old) = old {
+        // Another's file may be replaced but not given back; before its mode, which this may change.
+        let _ = fchown(temporary.as_file(), Some(old.uid()), Some(old.gid()));
+        temporary.as_file().set_permissions(old.permissions())?;
+    }
+    Ok(temporary)
+}
+
+#[cfg(not(unix))]
+fn temporary_in(folder: &Path, _old: Option<&Metadata>) -> io::Result<NamedTempFile> {
+    tempfile::Builder::new().prefix(".lichtenberg-").tempfile_in(folder)
+}
+
+/// Has the system write down which files are in `folder`.
+#[cfg(unix)]
+fn sync_folder(folder: &Path) -> io::Result<()> {
+    match File::open(folder)?.sync_all() {
+        // Some file systems know no such thing.
+        Err(error) if matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => Ok(()),
+        other => other,
+    }
+}
+
+#[cfg(not(unix))]
+fn sync_folder(_folder: &Path) -> io::Result<()> {
+    Ok(())
 }
 
 #[cfg(test)]
@@ -52,5 +108,34 @@ mod tests {
         assert!(failed.is_err());
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(fs::read_dir(folder.path().join("a")).unwrap().count(), 1, "no temporary file is left");
+        assert!(write_bytes(folder.path(), b"x").is_err());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_stands_there_stays() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        write_bytes(&at("real"), b"old").unwrap();
+        fs::set_permissions(at("real"), fs::Permissions::from_mode(0o640)).unwrap();
+        symlink("real", at("link")).unwrap();
+        symlink("later", at("dangling")).unwrap();
+        symlink("circle", at("circle")).unwrap();
+        write_bytes(&at("link"), b"new").unwrap();
+        write_bytes(&at("dangling"), b"made").unwrap();
+        assert!(write_bytes(&at("circle"), b"x").is_err());
+        assert!(at("link").is_symlink() && at("dangling").is_symlink());
+        assert_eq!(fs::read(at("real")).unwrap(), b"new");
+        assert_eq!(fs::read(at("later")).unwrap(), b"made");
+        assert_eq!(fs::metadata(at("real")).unwrap().permissions().mode() & 0o777, 0o640);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn devices_are_written() {
+        write_bytes(Path::new("/dev/null"), b"x").unwrap();
+        assert!(write_bytes(Path::new("/dev/full"), b"x").is_err());
+        assert!(!fs::metadata("/dev/full").unwrap().is_file());
     }
 }

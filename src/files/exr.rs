@@ -1,6 +1,6 @@
 //! OpenEXR decoding and encoding; decoding of skies (OpenEXR or Radiance HDR).
 
-use std::io::{self, Cursor, Seek, Write};
+use std::io::{self, Cursor};
 
 use exr::block::BlockIndex;
 use exr::image::write::channels::{ChannelsWriter, WritableChannels};
@@ -13,6 +13,7 @@ use exr::prelude::{
 };
 
 use super::PictureError;
+use super::exr_header::sort_attributes;
 use super::picture::{MOST_BYTES, MOST_SIDE};
 use crate::raster::{Channel, DataWindow, Layers, Panorama};
 
@@ -203,15 +204,11 @@ impl<F: Fn(usize, usize, &mut [f32]) + Sync> ChannelsWriter for &Rows<'_, F> {
 }
 
 /// Encodes a picture as one ZIP-compressed part, which every reader accepts. `fill` computes the values of a channel's row from
-/// the channel's index and the row's number.
+/// the channel's index and the row's number. The same picture has the same bytes.
 ///
 /// # Errors
-/// Those of `out`.
-pub fn encode_exr_rows(
-    head: &ExrHead,
-    fill: &(impl Fn(usize, usize, &mut [f32]) + Sync),
-    out: impl Write + Seek,
-) -> io::Result<()> {
+/// What cannot be encoded, as a size of 0.
+pub fn encode_exr_rows(head: &ExrHead, fill: &(impl Fn(usize, usize, &mut [f32]) + Sync)) -> io::Result<Vec<u8>> {
     let mut attributes = LayerAttributes::default();
     for (keyword, text) in &head.texts {
         let value = Text::new_or_none(ascii(text)).unwrap_or_default();
@@ -240,17 +237,21 @@ pub fn encode_exr_rows(
         image.attributes.chromaticities =
             Some(Chromaticities { red: Vec2(rx, ry), green: Vec2(gx, gy), blue: Vec2(bx, by), white: Vec2(wx, wy) });
     }
-    image.write().to_buffered(out).map_err(|error| match error {
+    let mut file = Cursor::new(Vec::new());
+    image.write().to_buffered(&mut file).map_err(|error| match error {
         exr::error::Error::Io(error) => error,
         error => io::Error::other(error.to_string()),
-    })
+    })?;
+    let mut file = file.into_inner();
+    sort_attributes(&mut file);
+    Ok(file)
 }
 
 /// [`encode_exr_rows`] of a picture in memory.
 ///
 /// # Errors
-/// Those of `out`.
-pub fn encode_exr(picture: &Layers, out: impl Write + Seek) -> io::Result<()> {
+/// As [`encode_exr_rows`].
+pub fn encode_exr(picture: &Layers) -> io::Result<Vec<u8>> {
     let head = ExrHead {
         size: [picture.width, picture.height],
         window: picture.window,
@@ -262,7 +263,7 @@ pub fn encode_exr(picture: &Layers, out: impl Write + Seek) -> io::Result<()> {
     let fill = |channel: usize, y: usize, row: &mut [f32]| {
         row.copy_from_slice(&picture.channels[channel].values[y * width..(y + 1) * width]);
     };
-    encode_exr_rows(&head, &fill, out)
+    encode_exr_rows(&head, &fill)
 }
 
 /// Do `bytes` start with OpenEXR's magic number?
@@ -327,9 +328,7 @@ mod tests {
             window: DataWindow { at: [-1, 4], origin: [0, 0], display: [12, 8] },
             chromaticities: Some([0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329]),
         };
-        let mut bytes = Cursor::new(Vec::new());
-        encode_exr(&picture, &mut bytes).unwrap();
-        let bytes = bytes.into_inner();
+        let bytes = encode_exr(&picture).unwrap();
         assert_eq!(decode_exr(&bytes).unwrap(), picture);
         assert!(decode_exr(&bytes[..bytes.len() - 9]).is_err());
         assert!(decode_exr(b"no picture").is_err());

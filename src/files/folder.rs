@@ -45,7 +45,8 @@ impl Reads {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    fn add(&self, read: FileRead) {
+    /// Adds a file that is read.
+    pub fn add(&self, read: FileRead) {
         let mut files = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if !files.contains(&read) {
             files.push(read);

@@ -1,6 +1,6 @@
 //! Pictures of strokes: light over a photograph or over black, on its way to files.
 
-use std::io::{self, Cursor, Write};
+use std::io::{self, Write};
 use std::sync::Arc;
 
 use crate::assemble::Backdrop;
@@ -207,7 +207,5 @@ pub(super) fn attribute(keyword: &str, text: &str) -> (String, String) {
 
 /// Writes OpenEXR whose rows `fill` makes, of a channel and a row.
 fn write_rows(head: &ExrHead, out: &mut dyn Write, fill: &(dyn Fn(usize, usize, &mut [f32]) + Sync)) -> io::Result<()> {
-    let mut bytes = Cursor::new(Vec::new());
-    encode_exr_rows(head, &fill, &mut bytes)?;
-    out.write_all(bytes.get_ref())
+    out.write_all(&encode_exr_rows(head, &fill)?)
 }

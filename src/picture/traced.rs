@@ -1,6 +1,6 @@
 //! Traced pictures.
 
-use std::io::{self, Cursor, Write};
+use std::io::{self, Write};
 
 use rayon::prelude::*;
 
@@ -60,9 +60,7 @@ impl Traced {
     pub fn write_exr(&self, texts: &[(&str, &str)], out: &mut dyn Write) -> io::Result<()> {
         let mut layers = self.layers();
         layers.texts.extend(texts.iter().map(|(keyword, text)| super::shone::attribute(keyword, text)));
-        let mut bytes = Cursor::new(Vec::new());
-        encode_exr(&layers, &mut bytes)?;
-        out.write_all(bytes.get_ref())
+        out.write_all(&encode_exr(&layers)?)
     }
 
     /// Red, green, blue by `encode` and alpha by `round`, not premultiplied.
