@@ -403,6 +403,19 @@ pub enum Format {
 }
 
 impl Format {
+    /// The files that it may make of a scene called `name`.
+    pub fn files(self, name: &str) -> Vec<String> {
+        let endings: &[&str] = match self {
+            Self::Pov => &[".inc", ".pov", ".ini", "-sky.exr"],
+            Self::Rib => &[".rib", ".archive.rib", ".casters.rib"],
+            Self::Svg => &[".svg"],
+            Self::Obj => &[".obj"],
+            Self::Ply => &[".ply"],
+        };
+        let own = endings.iter().map(|ending| format!("{name}{ending}"));
+        own.chain((self == Self::Rib).then(|| "thorns.sl".to_owned())).collect()
+    }
+
     /// The ending of the file that it makes, or of the first of them.
     pub fn ending(self) -> &'static str {
         match self {

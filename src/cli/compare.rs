@@ -11,6 +11,7 @@ use serde::Deserialize;
 use super::args::CompareArgs;
 use super::console::Console;
 use super::error::Failure;
+use super::guard::refuse_inputs;
 use crate::compare::{Metric, Outcome, Pair, Panel, changes, html, junit, measure, summary};
 use crate::files::{Rgba, decode_exr, decode_linear, encode_png, write_bytes};
 use crate::math::srgb_byte;
@@ -54,6 +55,7 @@ pub fn run(args: &CompareArgs, console: &Console) -> Result<(), Failure> {
     if files.is_empty() {
         return Err(Failure::Usage(format!("{} has no pictures (.png, .exr)", args.expected.display())));
     }
+    guard_inputs(args, &files)?;
     let wants_panels = args.html.is_some();
     let results: Vec<(Pair, Panel, Option<Rgba>)> =
         files.par_iter().map(|files| compare(args, &config, files, wants_panels)).collect();
@@ -64,7 +66,7 @@ pub fn run(args: &CompareArgs, console: &Console) -> Result<(), Failure> {
     if let Some(folder) = &args.diff {
         for (pair, _, difference) in &results {
             if let Some(picture) = difference.as_ref().filter(|_| !pair.is_same()) {
-                let path = folder.join(format!("{}.flip.png", pair.name));
+                let path = difference_path(folder, &pair.name);
                 write_bytes(&path, &png(picture)).map_err(|e| Failure::file("write", &path, &e))?;
             }
         }
@@ -93,11 +95,28 @@ pub fn run(args: &CompareArgs, console: &Console) -> Result<(), Failure> {
     }
 }
 
+/// Refuses outputs that are compared, or say how.
+fn guard_inputs(args: &CompareArgs, files: &[Files]) -> Result<(), Failure> {
+    let config = config_path(args);
+    let inputs = files.iter().flat_map(|files| [&files.expected, &files.actual]).chain([&config]);
+    let mut outputs: Vec<PathBuf> = args.junit.iter().chain(&args.html).cloned().collect();
+    if let Some(folder) = &args.diff {
+        outputs.extend(files.iter().map(|files| difference_path(folder, &files.name)));
+    }
+    refuse_inputs(inputs.map(PathBuf::as_path), &outputs)
+}
+
+/// Where the picture of a difference goes.
+fn difference_path(folder: &Path, name: &str) -> PathBuf {
+    folder.join(format!("{name}.flip.png"))
+}
+
+fn config_path(args: &CompareArgs) -> PathBuf {
+    args.config.clone().unwrap_or_else(|| args.expected.join(CONFIG))
+}
+
 fn read_config(args: &CompareArgs) -> Result<Config, Failure> {
-    let path = match &args.config {
-        Some(path) => path.clone(),
-        None => args.expected.join(CONFIG),
-    };
+    let path = config_path(args);
     match fs::read_to_string(&path) {
         Ok(text) => {
             let config: Config =

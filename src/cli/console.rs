@@ -1,13 +1,29 @@
 //! What the command says: results on stdout, everything else on stderr.
 
-use std::io::{IsTerminal, Write, stderr, stdout};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::io::{self, IsTerminal, Write, stderr, stdout};
+use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
+#[cfg(unix)]
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+#[cfg(unix)]
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::SIGINT;
+#[cfg(unix)]
+use signal_hook::consts::{SIGHUP, SIGQUIT, SIGTERM};
 
+#[cfg(unix)]
+use crate::files::exit;
 use crate::math::Progress;
+
+/// Signals that ask us to end.
+#[cfg(unix)]
+const ENDING: [i32; 4] = [SIGINT, SIGTERM, SIGHUP, SIGQUIT];
+
+/// Work that does not look whether to stop has so long to end by itself.
+#[cfg(unix)]
+const PATIENCE: Duration = Duration::from_millis(600);
 
 /// The command's voice, and its ear for signals.
 pub struct Console {
@@ -16,26 +32,22 @@ pub struct Console {
     quiet: bool,
     bar: ProgressBar,
     stop: Arc<AtomicBool>,
-    signal: Arc<AtomicUsize>,
+    signal: Arc<AtomicI32>,
+    lost: Mutex<Option<io::Error>>,
 }
 
 impl Console {
     pub fn new(quiet: bool, json: bool) -> Self {
         let stop = Arc::new(AtomicBool::new(false));
-        let signal = Arc::new(AtomicUsize::new(SIGINT as usize));
-        for number in [SIGINT, SIGTERM] {
-            // The second signal ends us at once. None of these fails for signals that may be caught.
-            let _ = signal_hook::flag::register_conditional_shutdown(number, 128 + number, Arc::clone(&stop));
-            let _ = signal_hook::flag::register_usize(number, Arc::clone(&signal), number as usize);
-            let _ = signal_hook::flag::register(number, Arc::clone(&stop));
-        }
+        let signal = Arc::new(AtomicI32::new(SIGINT));
+        heed_signals(Arc::clone(&stop), Arc::clone(&signal));
         let shown = !quiet && !json && stderr().is_terminal();
         let target = if shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(Some(1000), target);
         if let Ok(style) = ProgressStyle::with_template("{prefix} {msg:8} {wide_bar} {percent:>3} % {eta:>4}") {
             bar.set_style(style);
         }
-        Self { json, quiet, bar, stop, signal }
+        Self { json, quiet, bar, stop, signal, lost: Mutex::default() }
     }
 
     /// The handle for long work on what `label` names; it shows a bar where stderr is a terminal.
@@ -85,9 +97,18 @@ impl Console {
         self.line(&value.to_string());
     }
 
-    /// A result, on stdout. A closed pipe is no failure.
+    /// A result, on stdout. A closed pipe is no failure: whoever reads has enough.
     pub fn line(&self, text: &str) {
-        let _ = writeln!(stdout(), "{text}");
+        if let Err(error) = writeln!(stdout(), "{text}")
+            && error.kind() != io::ErrorKind::BrokenPipe
+        {
+            self.lost.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+        }
+    }
+
+    /// Why results could not be written, where any was lost.
+    pub fn lost(&self) -> Option<io::Error> {
+        self.lost.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
     /// Something to know, on stderr.
@@ -104,4 +125,40 @@ impl Console {
         self.bar.finish_and_clear();
         let _ = writeln!(stderr(), "{text}");
     }
+}
+
+/// On a signal sets `stop`, and `signal` to its number. Work that has not ended soon after, or by a second signal, ends with the
+/// process; nothing temporary is left.
+#[cfg(unix)]
+fn heed_signals(stop: Arc<AtomicBool>, signal: Arc<AtomicI32>) {
+    let heeded = ENDING.into_iter().filter(|&number| !is_ignored(number));
+    // Neither fails for signals that may be caught; without a thread the system's own handling stays.
+    let Ok(mut signals) = signal_hook::iterator::Signals::new(heeded) else { return };
+    let (send, come) = channel();
+    let relay = move || signals.forever().try_for_each(|number| send.send(number));
+    let heed = move || {
+        let Ok(number) = come.recv() else { return };
+        signal.store(number, Ordering::Relaxed);
+        stop.store(true, Ordering::Relaxed);
+        if come.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Disconnected) {
+            let _ = writeln!(stderr(), "interrupted");
+            exit(128 + number);
+        }
+    };
+    let _ = std::thread::Builder::new().spawn(relay);
+    let _ = std::thread::Builder::new().spawn(heed);
+}
+
+#[cfg(not(unix))]
+fn heed_signals(stop: Arc<AtomicBool>, _signal: Arc<AtomicI32>) {
+    let _ = signal_hook::flag::register_conditional_shutdown(SIGINT, 128 + SIGINT, Arc::clone(&stop));
+    let _ = signal_hook::flag::register(SIGINT, stop);
+}
+
+/// Were we started not to heed the signal, as by `nohup`?
+#[cfg(unix)]
+fn is_ignored(number: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigIgn:")?.trim(), 16).ok());
+    mask.is_some_and(|mask| mask >> (number - 1) & 1 == 1)
 }

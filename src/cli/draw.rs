@@ -11,7 +11,7 @@ use super::jobs::{Job, Jobs};
 use super::preview::{Drawn, samples, shine, trace, view};
 use super::write::{note_patterns, read_templates, write_pov, write_rib};
 use crate::export::{Origin, Pov, Rib, RibOptions, RibShadows, SvgOptions, Templates, write_svg};
-use crate::files::{Rgba, decode_png, draw_svg};
+use crate::files::{Rgba, Temporary, decode_png, draw_svg};
 use crate::geom::MarkKind;
 use crate::math::Progress;
 use crate::model::Model;
@@ -73,9 +73,7 @@ pub fn draw(
     let model = jobs.model(scene, &[], console, progress)?;
     let Some(with) = args.with else { return trace(&model, &view, progress) };
     let templates = read_templates(args.templates.as_deref())?;
-    let folder = tempfile::Builder::new()
-        .prefix("lichtenberg-")
-        .tempdir()
+    let folder = Temporary::folder(|| tempfile::Builder::new().prefix("lichtenberg-").tempdir())
         .map_err(|e| Failure::Usage(format!("cannot make a folder for the renderer's files: {e}")))?;
     let size = scene.recipe.size;
     let origin = job.origin(scene.recipe.seed, "render");

@@ -1,10 +1,14 @@
 //! How the command fails: one clear error and an exit code.
 
-use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource, Report};
+use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, Report};
 
 use super::console::Console;
+use super::excerpt::Excerpt;
 use crate::render::{PovrayError, RibError};
 use crate::scene::{SceneError, Stage};
+
+/// Mistakes that are told of a scene: those after them are counted.
+const MOST_MISTAKES: usize = 20;
 
 /// Why the command did not do what was asked.
 #[derive(Debug)]
@@ -57,13 +61,23 @@ impl Failure {
             }
             Self::Stopped => vec![serde_json::json!({ "message": "interrupted" })],
         };
-        serde_json::json!({ "errors": mistakes })
+        match self {
+            Self::Scene(error) if more(error) > 0 => {
+                serde_json::json!({ "errors": mistakes, "more": more(error) })
+            }
+            _ => serde_json::json!({ "errors": mistakes }),
+        }
     }
+}
+
+/// The number of mistakes that are not told.
+fn more(error: &SceneError) -> usize {
+    error.mistakes.len().saturating_sub(MOST_MISTAKES)
 }
 
 /// Mistakes as JSON: scene, file (the scene or what it includes), line, column, place, message.
 fn mistakes(error: &SceneError) -> Vec<serde_json::Value> {
-    let mistakes = error.mistakes.iter().map(|mistake| {
+    let mistakes = error.mistakes.iter().take(MOST_MISTAKES).map(|mistake| {
         let at = error.line_column(mistake);
         serde_json::json!({
             "scene": error.name,
@@ -81,20 +95,29 @@ fn mistakes(error: &SceneError) -> Vec<serde_json::Value> {
 fn print_scene(error: &SceneError, console: &Console) {
     let theme = if console.is_fancy() { GraphicalTheme::unicode() } else { GraphicalTheme::none() };
     let handler = GraphicalReportHandler::new_themed(theme);
-    for mistake in &error.mistakes {
+    for mistake in error.mistakes.iter().take(MOST_MISTAKES) {
         let place = if mistake.place.is_empty() { String::new() } else { format!("{}: ", mistake.place) };
         let mut diagnostic = MietteDiagnostic::new(format!("{place}{}", mistake.message));
-        match &mistake.span {
-            Some(span) => diagnostic.labels = Some(vec![LabeledSpan::at(span.range.clone(), "here")]),
-            None => diagnostic.message = format!("{}: {}", error.name, diagnostic.message),
-        }
         let (name, source) = error.file(mistake);
-        let report = Report::new(diagnostic).with_source_code(NamedSource::new(name, source.to_owned()));
+        let report = match &mistake.span {
+            Some(span) => {
+                let excerpt = Excerpt::new(name, source, &span.range);
+                diagnostic.labels = Some(vec![LabeledSpan::at(excerpt.mistake.clone(), "here")]);
+                Report::new(diagnostic).with_source_code(excerpt)
+            }
+            None => {
+                diagnostic.message = format!("{}: {}", error.name, diagnostic.message);
+                Report::new(diagnostic)
+            }
+        };
         let mut text = String::new();
         if handler.render_report(&mut text, report.as_ref()).is_err() {
-            text = error.to_string();
+            text = format!("{name}: {place}{}", mistake.message);
         }
         console.error(text.trim_end());
+    }
+    if more(error) > 0 {
+        console.error(&format!("... and {} more", more(error)));
     }
 }
 

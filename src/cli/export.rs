@@ -27,8 +27,17 @@ pub fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
         return Err(Failure::Usage(format!("{option} is for RIB: use it with --to rib")));
     }
     let templates = read_templates(args.templates.as_deref())?;
+    for name in args.templates.iter().flat_map(|folder| Templates::names().map(|name| folder.join(name))) {
+        jobs.add_input(&name);
+    }
+    let folder_of = |path: &str| Path::new(path).parent().unwrap_or(Path::new(".")).to_owned();
+    let files = names.iter().zip(&paths).flat_map(|(name, path)| {
+        let folder = folder_of(path);
+        args.to.files(name).into_iter().map(move |file| folder.join(file))
+    });
+    jobs.guard(&files.collect::<Vec<_>>())?;
     for ((job, name), path) in jobs.list.iter().zip(&names).zip(&paths) {
-        let folder = Path::new(path).parent().unwrap_or(Path::new("."));
+        let folder = &folder_of(path);
         let first = folder.join(format!("{name}.{}", args.to.ending()));
         if args.skip_existing && first.exists() {
             continue;

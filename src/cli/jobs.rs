@@ -1,11 +1,12 @@
 //! Many at once: scenes, seeds and sweeps become jobs, each with its own output.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::args::{SceneArgs, Seeds, Sweep};
 use super::console::Console;
 use super::error::Failure;
+use super::guard::refuse_inputs;
 use super::memory;
 use crate::export::Origin;
 use crate::files::{FileRead, Folder, Reads, embedded_scenes};
@@ -88,14 +89,18 @@ impl Jobs {
             Some(frames) => frames.clone().map(Some).collect(),
             None => vec![None],
         };
-        if seeds.len().saturating_mul(frames.len()).saturating_mul(args.scenes.len()) > MOST_JOBS {
-            return Err(Failure::Usage(format!("more than {MOST_JOBS} pictures in one call are a slip of the hand")));
+        let sweeps = args.sweep.iter().map(|sweep| sweep.values.len());
+        let count =
+            [seeds.len(), frames.len(), args.scenes.len()].into_iter().chain(sweeps).fold(1, usize::saturating_mul);
+        if count > MOST_JOBS {
+            return Err(Failure::Usage(format!(
+                "{count} pictures in one call are a slip of the hand: {MOST_JOBS} at most"
+            )));
         }
         let mut list = Vec::new();
         let reads = Reads::default();
         for given in &args.scenes {
-            let source = find_scene(given, console)?;
-            let source = Source { folder: source.folder.recorded(&reads), ..source };
+            let source = find_scene(given, console)?.recorded(&reads);
             for (&seed, &frame) in seeds.iter().flat_map(|seed| frames.iter().map(move |frame| (seed, frame))) {
                 for choice in choices(&args.sweep) {
                     list.push(Job::new(args, &source, given, (seed, seeds.len() > 1), frame, &choice));
@@ -128,6 +133,24 @@ impl Jobs {
         let size = self.size.map(|[w, h]| Override { path: "size".to_owned(), value: format!("[{w}, {h}]") });
         let overrides: Vec<Override> = job.overrides.iter().cloned().chain(size).collect();
         Ok(scene::load_frame(&job.source, &overrides, job.frame.map(f64::from))?)
+    }
+
+    /// Notes that the call reads `path` besides its scenes.
+    pub fn add_input(&self, path: &Path) {
+        self.reads.add(FileRead { name: path.display().to_string(), path: path.to_owned() });
+    }
+
+    /// Refuses `outputs` that a scene reads, before anything grows: every scene is read for what it names.
+    pub fn guard(&self, outputs: &[PathBuf]) -> Result<(), Failure> {
+        let mut known = BTreeSet::new();
+        for job in &self.list {
+            let named: Vec<&Override> = job.overrides.iter().filter(|o| o.path != "seed").collect();
+            let key: Vec<&str> = named.iter().flat_map(|o| [o.path.as_str(), &o.value]).collect();
+            if known.insert((job.name(), key)) {
+                self.load(job)?;
+            }
+        }
+        refuse_inputs(self.reads.files().iter().map(|read| read.path.as_path()), outputs)
     }
 
     /// The files that scenes have named so far, whether they could be read or not.

@@ -6,7 +6,9 @@ mod compare;
 mod console;
 mod draw;
 mod error;
+mod excerpt;
 mod export;
+mod guard;
 mod info;
 mod jobs;
 mod list;
@@ -23,6 +25,7 @@ mod terminal;
 mod watch;
 mod write;
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -34,9 +37,33 @@ use error::Failure;
 /// Runs the command with the arguments of the process.
 #[must_use]
 pub fn main() -> ExitCode {
+    std::panic::set_hook(Box::new(report_panic));
+    // What a panic leaves behind is taken away while it unwinds.
+    std::panic::catch_unwind(parse_and_run).unwrap_or(ExitCode::from(INTERNAL_ERROR))
+}
+
+/// The exit code of a panic, which is always a fault of the program: `EX_SOFTWARE` of sysexits.h.
+const INTERNAL_ERROR: u8 = 70;
+
+/// Says on stderr what a panic is to its user.
+fn report_panic(panic: &std::panic::PanicHookInfo<'_>) {
+    let message = panic.payload_as_str().unwrap_or("no message");
+    let place = panic.location().map_or_else(String::new, |at| format!(" ({}:{})", at.file(), at.line()));
+    let _ = writeln!(
+        std::io::stderr(),
+        "internal error: {message}{place}\nThis is a fault of lichtenberg {}: please report it with the command and its scene.",
+        env!("CARGO_PKG_VERSION")
+    );
+}
+
+fn parse_and_run() -> ExitCode {
     let args = Args::parse();
     let console = Console::new(args.quiet, args.json);
-    match run(args, &console) {
+    let result = run(args, &console).and_then(|()| match console.lost() {
+        None => Ok(()),
+        Some(error) => Err(Failure::Usage(format!("cannot write to standard output: {error}"))),
+    });
+    match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             failure.print(&console);

@@ -27,7 +27,7 @@ pub fn run(args: &NewArgs, console: &Console) -> Result<(), Failure> {
     };
     let (name, text, folder) = found;
     let reads = Reads::default();
-    let source = Source { name: name.clone(), text: (*text).to_owned(), folder: folder.clone().recorded(&reads) };
+    let source = Source { name: name.clone(), text: (*text).to_owned(), folder: folder.clone() }.recorded(&reads);
     load(&source, &[])?;
     let reads = reads.files();
     let own = PathBuf::from(format!("{}.toml", args.name));

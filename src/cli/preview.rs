@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::args::{Look, RenderArgs, Renderer};
 use super::error::Failure;
 use crate::files::{Rgba, encode_png, write_atomic};
-use crate::glow::ShineError;
+use crate::glow::{Pass, ShineError};
 use crate::math::Progress;
 use crate::model::{Model, Stroke};
 use crate::picture::{self, Depth, Shone, ShoneError, Traced};
@@ -110,11 +110,16 @@ pub fn write_shone(
     }
     let mut files = Vec::new();
     for pass in shone.passes() {
-        let file = path.with_extension(format!("{}.exr", pass.name()));
+        let file = pass_file(path, pass);
         write_atomic(&file, |out| shone.write_pass(pass, texts, out)).map_err(|e| Failure::file("write", &file, &e))?;
         files.push(file);
     }
     Ok(files)
+}
+
+/// The file of one pass of the picture `path`.
+pub fn pass_file(path: &Path, pass: Pass) -> PathBuf {
+    path.with_extension(format!("{}.exr", pass.name()))
 }
 
 /// Bits of a channel as the command line has them.

@@ -34,6 +34,8 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
     if args.watch {
         return watch::run(args, threads, console);
     }
+    let written = outputs.iter().filter(|_| keep).map(PathBuf::from).chain(args.sheet.clone()).collect::<Vec<_>>();
+    jobs.guard(&written)?;
     let mut tiles = Vec::new();
     for (job, output) in jobs.list.iter().zip(&outputs) {
         let path = PathBuf::from(output);

@@ -10,12 +10,14 @@ use rand::RngExt;
 use super::args::{PlateOrigin, PlateSpace, Seeds, StrikeArgs};
 use super::console::Console;
 use super::error::Failure;
+use super::guard::refuse_inputs;
 use super::jobs::find_scene;
 use super::memory;
 use super::place::{Place, Table, parse_place};
-use super::preview::{depth, is_exr, shine, write_shone};
+use super::preview::{depth, is_exr, pass_file, shine, write_shone};
 use super::sheet::{Tile, write_sheet};
-use crate::files::{ACESCG, Folder, REC709, decode_grey, decode_plate, set_chromaticities};
+use crate::files::{ACESCG, Folder, REC709, Reads, decode_grey, decode_plate, set_chromaticities};
+use crate::glow::Pass;
 use crate::grow::Placement;
 use crate::math::{DVec2, Stream};
 use crate::model::BEYOND;
@@ -34,7 +36,8 @@ struct Shot {
 }
 
 pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
-    let source = find_scene(&args.scene, console)?;
+    let reads = Reads::default();
+    let source = find_scene(&args.scene, console)?.recorded(&reads);
     let seeds: Vec<Option<u64>> = match (&args.seeds, args.seed) {
         (Some(Seeds(seeds)), _) => seeds.iter().map(|&seed| Some(seed)).collect(),
         (None, seed) => vec![seed],
@@ -51,6 +54,8 @@ pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
     if let Some(frames) = args.frames.as_ref().filter(|frames| !frames.contains(&struck_at)) {
         console.note(&format!("note: it strikes at frame {struck_at}, outside {}-{}", frames.start(), frames.end()));
     }
+
+    guard_inputs(args, &source, &reads, &shots, &seeds)?;
 
     let mut tiles = Vec::new();
     for shot in &shots {
@@ -129,8 +134,7 @@ fn write(
     let document = scene.document().to_string();
     let texts = [("Title", scene.recipe.title.as_str()), ("Software", &software), ("Scene", &document)];
     for output in &shot.outputs {
-        let name = output.to_string_lossy().replace("{seed}", &scene.recipe.seed.to_string());
-        let path = PathBuf::from(name);
+        let path = with_seed(output, scene.recipe.seed);
         for file in write_shone(shone, &path, depth(&args.bits), args.split, &texts)? {
             if console.json {
                 console.result(&serde_json::json!({
@@ -146,6 +150,34 @@ fn write(
         }
     }
     Ok(())
+}
+
+/// `output` with the seed in its name.
+fn with_seed(output: &Path, seed: u64) -> PathBuf {
+    PathBuf::from(output.to_string_lossy().replace("{seed}", &seed.to_string()))
+}
+
+/// Refuses outputs that the call reads: photographs of any frame, mattes, tables, the scene and its files.
+fn guard_inputs(
+    args: &StrikeArgs,
+    source: &Source,
+    reads: &Reads,
+    shots: &[Shot],
+    seeds: &[Option<u64>],
+) -> Result<(), Failure> {
+    let own = scene::load_frame(source, &args.set, None)?.recipe.seed;
+    let reads = reads.files();
+    let others = [&args.matte, &args.track, &args.intensity].into_iter().flatten();
+    let inputs = reads.iter().map(|read| &read.path).chain(shots.iter().map(|shot| &shot.plate)).chain(others);
+    let mut outputs: Vec<PathBuf> = args.sheet.iter().cloned().collect();
+    for (output, seed) in shots.iter().flat_map(|shot| &shot.outputs).flat_map(|o| seeds.iter().map(move |s| (o, s))) {
+        let path = with_seed(output, seed.unwrap_or(own));
+        if args.split {
+            outputs.extend(Pass::ALL.map(|pass| pass_file(&path, pass)));
+        }
+        outputs.push(path);
+    }
+    refuse_inputs(inputs.map(PathBuf::as_path), &outputs)
 }
 
 /// What is read and what is written, all of it looked up before any of it is made.

@@ -107,7 +107,7 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
                     outdated.store(true, Ordering::Relaxed);
                 }
                 if work.is_finished() {
-                    return work.join().unwrap_or_else(|_| Err(Failure::Usage("rendering broke off".to_owned())));
+                    return work.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
                 }
             }
         });
@@ -167,6 +167,7 @@ fn once(
         sources.lock().unwrap_or_else(PoisonError::into_inner).follow(&read.path)?;
     }
     let scene = loaded?;
+    jobs.guard(&[output.to_owned()])?;
     let finish = |drawn: Drawn| -> Result<(), Failure> {
         drawn.write(output, args, &scene)?;
         if args.show.contains(&Show::Terminal) {
