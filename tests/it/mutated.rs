@@ -57,7 +57,7 @@ fn small(text: &str) -> String {
 
 /// A third, unless all is to be tested.
 fn cases() -> u32 {
-    if std::env::var_os("LICHTENBERG_TEST_ALL").is_some() { 3000 } else { 1000 }
+    if std::env::var_os("LICHTENBERG_TEST_ALL").is_some() { 3000 } else { 500 }
 }
 
 proptest! {
