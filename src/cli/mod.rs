@@ -26,6 +26,7 @@ mod watch;
 mod write;
 
 use std::io::Write;
+use std::panic::UnwindSafe;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -38,8 +39,12 @@ use error::Failure;
 #[must_use]
 pub fn main() -> ExitCode {
     std::panic::set_hook(Box::new(report_panic));
-    // What a panic leaves behind is taken away while it unwinds.
-    std::panic::catch_unwind(parse_and_run).unwrap_or(ExitCode::from(INTERNAL_ERROR))
+    caught(parse_and_run)
+}
+
+/// Runs `work`; what a panic leaves behind is taken away while it unwinds.
+fn caught(work: impl FnOnce() -> ExitCode + UnwindSafe) -> ExitCode {
+    std::panic::catch_unwind(work).unwrap_or(ExitCode::from(INTERNAL_ERROR))
 }
 
 /// The exit code of a panic, which is always a fault of the program: `EX_SOFTWARE` of sysexits.h.
@@ -88,5 +93,22 @@ fn run(args: Args, console: &Console) -> Result<(), Failure> {
         Command::Schema(chosen) => schema::run(&chosen, console),
         Command::Completions(chosen) => shell::completions(&chosen, console),
         Command::Man => shell::man(console),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::Temporary;
+
+    #[test]
+    fn panics_are_internal_errors() {
+        let folder = tempfile::tempdir().unwrap();
+        let code = caught(|| {
+            let _temporary = Temporary::folder(|| tempfile::tempdir_in(folder.path())).unwrap();
+            panic!("on purpose")
+        });
+        assert_eq!(code, ExitCode::from(70));
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 }
