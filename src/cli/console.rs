@@ -131,7 +131,8 @@ impl Console {
 /// process; nothing temporary is left.
 #[cfg(unix)]
 fn heed_signals(stop: Arc<AtomicBool>, signal: Arc<AtomicI32>) {
-    let heeded = ENDING.into_iter().filter(|&number| !is_ignored(number));
+    // What `nohup` starts goes on without its terminal.
+    let heeded = ENDING.into_iter().filter(|&number| number != SIGHUP || !is_ignored(number));
     // Neither fails for signals that may be caught; without a thread the system's own handling stays.
     let Ok(mut signals) = signal_hook::iterator::Signals::new(heeded) else { return };
     let (send, come) = channel();
@@ -155,7 +156,7 @@ fn heed_signals(stop: Arc<AtomicBool>, _signal: Arc<AtomicI32>) {
     let _ = signal_hook::flag::register(SIGINT, stop);
 }
 
-/// Were we started not to heed the signal, as by `nohup`?
+/// Were we started not to heed the signal?
 #[cfg(unix)]
 fn is_ignored(number: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
