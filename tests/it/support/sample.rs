@@ -3,12 +3,16 @@
 use std::io::Write;
 use std::process::Command;
 
+/// Scenes that take a minute in every test, more than all the others of a sample: for `./run-tests --all`.
+const HEAVY: [&str; 1] = ["forest"];
+
 /// `size` of the names, told on stderr; all with `LICHTENBERG_TEST_ALL` set.
 pub fn sample(mut names: Vec<String>, size: usize) -> Vec<String> {
     if std::env::var_os("LICHTENBERG_TEST_ALL").is_some() {
         return names;
     }
     let commit = commit();
+    names.retain(|name| !HEAVY.contains(&name.as_str()));
     names.sort_by_key(|name| hash(&commit, name));
     names.truncate(size);
     // Past the capture of tests that pass.
