@@ -5,7 +5,8 @@ use std::path::Path;
 
 use crate::support::{run_in, scene_names, succeed_in, text};
 
-const TWIG: &str = r#"title = "Twig"
+/// A scene that reads no file.
+pub const TWIG: &str = r#"title = "Twig"
 [space.sheet]
 shape.box = { min = [-1, 0], max = [1, 2] }
 nodes.lattice = { spacing = 0.1, neighbours = 8 }

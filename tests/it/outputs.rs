@@ -4,22 +4,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Stdio;
 
+use crate::command::TWIG;
 use crate::support::{lichtenberg, run_in, succeed_in, text};
-
-/// A scene that reads nothing.
-const SHEET: &str = r#"title = "Sheet"
-size = [64, 64]
-[space.sheet]
-shape.box = { min = [-1, 0], max = [1, 2] }
-nodes.lattice = { spacing = 0.1, neighbours = 8 }
-[grow.twig]
-space = "sheet"
-from.at = [[0, 0]]
-to.tips = { count = 5 }
-width.constant = 0.02
-[object.twig]
-grow = ["twig"]
-"#;
 
 /// The command must refuse, name `output`, and change no file.
 fn keeps(folder: &Path, args: &[&str], output: &str) {
@@ -57,7 +43,7 @@ fn no_output_replaces_an_input() {
     // Also where another scene of the call reads it.
     fs::rename(at("map.png"), at("plain.png")).unwrap();
     fs::write(at("other.toml"), fs::read_to_string(at("map.toml")).unwrap().replace("map.png", "plain.png")).unwrap();
-    fs::write(at("plain.toml"), SHEET).unwrap();
+    fs::write(at("plain.toml"), TWIG).unwrap();
     keeps(folder.path(), &["render", "plain.toml", "other.toml"], "plain.png");
 }
 
@@ -129,7 +115,7 @@ fn every_process_writes_the_same_bytes() {
 fn reports_end() {
     let folder = tempfile::tempdir().unwrap();
     let wrong = |name: &str, points: &str| {
-        let scene = SHEET.replace("[[0, 0]]", points);
+        let scene = TWIG.replace("[[0, 0]]", points);
         fs::write(folder.path().join(name), scene).unwrap();
         let checked = run_in(folder.path(), &["check", name]);
         assert_eq!(checked.status.code(), Some(2));
@@ -137,7 +123,7 @@ fn reports_end() {
     };
     // A mistake beyond the column that the report's printer can number.
     let far = wrong("far.toml", &format!("[{} [0]]", "[0, 0],".repeat(12_000)));
-    assert!(far.contains("far.toml:8:84"), "{far}");
+    assert!(far.contains("far.toml:7:84"), "{far}");
     assert!(far.lines().all(|line| line.chars().count() < 160), "{far}");
     // A mistake in each of thousands.
     let many = wrong("many.toml", &format!("[{}]", "0, ".repeat(20_000)));
