@@ -1,18 +1,15 @@
-//! Atomic writes: a temporary file in the same folder, then a rename.
+//! Atomic writes: a draft in the same folder, which is given its name when it is whole.
 
-use std::fs::{self, File, Metadata, OpenOptions};
+use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
-
-use super::Temporary;
+use super::draft::Draft;
 
 /// Links that lead on from each other: more are a circle, as for the system.
 const MOST_LINKS: usize = 40;
 
-/// Writes `path` atomically: `write` fills a temporary file, which replaces `path` only on success, and is then on the disk
-/// itself. A file that is replaced keeps its mode and, where we may, its owner. Through a link its target is written;
+/// Writes `path` atomically: `write` fills a draft, which replaces `path` only on success, and is then on the disk itself. A file that is replaced keeps its mode and, where we may, its owner. Through a link its target is written;
 /// pipes and devices are written to.
 ///
 /// # Errors
@@ -26,10 +23,10 @@ pub fn write_atomic(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io
     };
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::create_dir_all(folder)?;
-    let (file, temporary) = Temporary::file(|| temporary_in(folder, old.as_ref()))?;
-    fill(&file, write)?;
-    file.sync_all()?;
-    temporary.persist(&path)?;
+    let draft = Draft::new(folder, old.as_ref())?;
+    fill(draft.file(), write)?;
+    draft.file().sync_all()?;
+    draft.publish(&path)?;
     sync_folder(folder)
 }
 
@@ -55,26 +52,6 @@ fn target(path: &Path) -> io::Result<PathBuf> {
         path = path.parent().unwrap_or(Path::new("")).join(next);
     }
     Err(io::Error::other("its links lead in a circle"))
-}
-
-/// A temporary file for one that takes the place of `old`.
-#[cfg(unix)]
-fn temporary_in(folder: &Path, old: Option<&Metadata>) -> io::Result<NamedTempFile> {
-    use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
-    // As for any new file: the umask applies.
-    let new = fs::Permissions::from_mode(0o666);
-    let temporary = tempfile::Builder::new().prefix(".lichtenberg-").permissions(new).tempfile_in(folder)?;
-    if let Some(old) = old {
-        // Another's file may be replaced but not given back; before its mode, which this may change.
-        let _ = fchown(temporary.as_file(), Some(old.uid()), Some(old.gid()));
-        temporary.as_file().set_permissions(old.permissions())?;
-    }
-    Ok(temporary)
-}
-
-#[cfg(not(unix))]
-fn temporary_in(folder: &Path, _old: Option<&Metadata>) -> io::Result<NamedTempFile> {
-    tempfile::Builder::new().prefix(".lichtenberg-").tempfile_in(folder)
 }
 
 /// Has the system write down which files are in `folder`.

@@ -91,11 +91,15 @@ pub fn decode_exr(bytes: &[u8]) -> Result<Layers, ExrError> {
     let channels: Vec<Channel> = layer
         .channel_data
         .list
-        .iter()
+        .into_iter()
         .map(|channel| Channel {
             name: channel.name.to_string(),
-            values: channel.sample_data.values_as_f32().collect(),
             is_half: matches!(channel.sample_data, FlatSamples::F16(_)),
+            // Not twice in memory.
+            values: match channel.sample_data {
+                FlatSamples::F32(values) => values,
+                other => other.values_as_f32().collect(),
+            },
         })
         .collect();
     if channels.iter().any(|c| c.values.len() != pixels) {

@@ -19,6 +19,8 @@ const MOST_BYTES: u64 = 256 << 20;
 pub enum Folder {
     /// On disk.
     Disk(PathBuf),
+    /// On disk, reading nothing outside the second: paths without links.
+    Confined(PathBuf, Arc<[PathBuf]>),
     /// Within the embedded scenes, by path.
     Embedded(PathBuf),
     /// One of these, whose reads are recorded.
@@ -65,7 +67,7 @@ impl Folder {
     #[must_use]
     pub fn path(&self, name: &str) -> PathBuf {
         match self {
-            Self::Disk(folder) => folder.join(name),
+            Self::Disk(folder) | Self::Confined(folder, _) => folder.join(name),
             Self::Embedded(folder) => inside(&folder.join(name)).unwrap_or_else(|| PathBuf::from(name)),
             Self::Recorded(folder, _) => folder.path(name),
         }
@@ -77,6 +79,7 @@ impl Folder {
         let holder = |path: PathBuf| path.parent().unwrap_or(Path::new("")).to_owned();
         match self {
             Self::Disk(_) => Self::Disk(holder(self.path(name))),
+            Self::Confined(_, allowed) => Self::Confined(holder(self.path(name)), Arc::clone(allowed)),
             Self::Embedded(_) => Self::Embedded(holder(self.path(name))),
             Self::Recorded(folder, reads) => folder.of(name).recorded(reads),
         }
@@ -97,23 +100,35 @@ impl Folder {
                 .and_then(|path| SCENES.get_file(path))
                 .map(|file| file.contents().to_vec())
                 .ok_or_else(|| wrong(&"it is not among the embedded files")),
-            Self::Disk(folder) => {
-                let path = folder.join(name);
-                let meta = path.metadata().map_err(|e| wrong(&e))?;
-                if !meta.is_file() {
-                    return Err(wrong(&"it is not a file"));
+            Self::Disk(folder) => read_file(&folder.join(name)).map_err(|reason| wrong(&reason)),
+            Self::Confined(folder, allowed) => {
+                let place = folder.join(name).canonicalize();
+                // Whether something is there or not is told of what may be read alone.
+                let is_below = |name: &str| Path::new(name).components().all(|c| matches!(c, Component::Normal(_)));
+                match place {
+                    Ok(place) if allowed.iter().any(|root| place.starts_with(root)) => {
+                        read_file(&place).map_err(|reason| wrong(&reason))
+                    }
+                    Err(error) if is_below(name) => Err(wrong(&error)),
+                    _ => Err(wrong(&"it lies outside the folders that this scene may read")),
                 }
-                if meta.len() > MOST_BYTES {
-                    return Err(wrong(&format!("it has {} bytes, {MOST_BYTES} at most can be read", meta.len())));
-                }
-                let mut bytes = Vec::new();
-                File::open(path)
-                    .and_then(|file| file.take(MOST_BYTES).read_to_end(&mut bytes))
-                    .map_err(|e| wrong(&e))?;
-                Ok(bytes)
             }
         }
     }
+}
+
+/// The bytes of a file of reasonable size, or why not.
+fn read_file(path: &Path) -> Result<Vec<u8>, String> {
+    let meta = path.metadata().map_err(|error| error.to_string())?;
+    if !meta.is_file() {
+        return Err("it is not a file".to_owned());
+    }
+    if meta.len() > MOST_BYTES {
+        return Err(format!("it has {} bytes, {MOST_BYTES} at most can be read", meta.len()));
+    }
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(MOST_BYTES).read_to_end(&mut bytes));
+    read.map(|_| bytes).map_err(|error| error.to_string())
 }
 
 /// A path without `..`; `None` where it leads out.
@@ -176,6 +191,33 @@ mod tests {
                 read("../../Cargo.toml", "../../Cargo.toml")
             ]
         );
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn confined_scenes_read_what_is_allowed() {
+        let place = tempfile::tempdir().unwrap();
+        let root = place.path().canonicalize().unwrap();
+        for folder in ["mine/sub", "more", "other"] {
+            std::fs::create_dir_all(root.join(folder)).unwrap();
+            std::fs::write(root.join(folder).join("a"), folder).unwrap();
+        }
+        for (link, to) in [("mine/out", "../other/a"), ("mine/in", "sub/a"), ("mine/allowed", "../more/a")] {
+            std::os::unix::fs::symlink(to, root.join(link)).unwrap();
+        }
+        let allowed: Arc<[PathBuf]> = [root.join("mine"), root.join("more")].into();
+        let mine = Folder::Confined(root.join("mine"), allowed);
+        for (name, text) in
+            [("sub/a", "mine/sub"), ("sub/../in", "mine/sub"), ("allowed", "more"), ("../more/a", "more")]
+        {
+            assert_eq!(mine.read(name).unwrap(), text.as_bytes(), "{name}");
+        }
+        let absolute = root.join("other/a");
+        for name in ["../other/a", "../other/none", "out", "/dev/zero", "/none", absolute.to_str().unwrap()] {
+            assert!(mine.read(name).unwrap_err().contains("outside"), "{name}");
+        }
+        assert!(mine.read("none").unwrap_err().contains("No such file"));
+        assert!(mine.of("sub/a").read("../../other/a").is_err() && mine.of("sub/a").read("../in").is_ok());
     }
 
     #[test]

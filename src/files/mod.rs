@@ -5,13 +5,16 @@
 mod atomic_write;
 mod checksum;
 mod cryptomatte;
+mod draft;
 mod exr;
 mod exr_header;
+mod extent;
 mod folder;
 mod inputs;
 mod mesh;
 mod picture;
 mod plate;
+mod scratch;
 mod shape_files;
 mod sketch;
 mod temporary;
@@ -20,6 +23,7 @@ pub use self::exr::{ExrError, ExrHead, PanoramaError, decode_exr, decode_panoram
 pub use atomic_write::{write_atomic, write_bytes};
 pub use checksum::{is_edited, seal};
 pub use cryptomatte::add_mattes;
+pub use extent::{Extent, picture_extent};
 pub use folder::{FileRead, Folder, Reads, embedded_scenes, leaf_names};
 pub use inputs::Inputs;
 pub use mesh::{MeshError, decode_mesh, decode_obj, decode_ply};
@@ -28,5 +32,6 @@ pub use picture::{
     png_texts, resize,
 };
 pub use plate::{ACESCG, PlateError, REC709, decode_plate, resize_grey, resize_plate, set_chromaticities};
+pub use scratch::Scratch;
 pub use sketch::{Page, SketchError, decode_sketch, draw_svg, letter_outlines};
 pub use temporary::{Temporary, exit};

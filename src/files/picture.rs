@@ -2,7 +2,7 @@
 
 use std::io::{self, Cursor, Write};
 
-use image::{DynamicImage, ImageReader, Limits};
+use image::{DynamicImage, ImageBuffer, ImageReader, Limits};
 
 use crate::math::from_srgb;
 use crate::raster::{Channel, Grey, Layers};
@@ -104,19 +104,31 @@ pub fn decode_png(bytes: &[u8]) -> Result<Rgba, PictureError> {
 /// # Errors
 /// [`PictureError`].
 pub fn decode_linear(bytes: &[u8]) -> Result<Layers, PictureError> {
-    let picture = decode(bytes)?.into_rgba16();
-    let (width, height) = picture.dimensions();
-    let value = |v: u16| f64::from(v) / 65535.0;
-    let channels = (0..4).zip(["R", "G", "B", "A"]).map(|(i, name)| Channel {
+    let picture = decode(bytes)?;
+    let (width, height) = (picture.width(), picture.height());
+    // Pixels of a byte a channel are not blown up: pictures are large.
+    let channels = match picture.color().bytes_per_pixel() / picture.color().channel_count() {
+        1 => linear_channels(&picture.into_rgba8(), |v| f64::from(v) / 255.0),
+        _ => linear_channels(&picture.into_rgba16(), |v| f64::from(v) / 65535.0),
+    };
+    Ok(Layers { width, height, channels, texts: png_texts(bytes), ..Layers::default() })
+}
+
+/// The channels of an sRGB picture with alpha, whose samples `value` brings to 0 to 1.
+fn linear_channels<T>(picture: &ImageBuffer<image::Rgba<T>, Vec<T>>, value: impl Fn(T) -> f64) -> Vec<Channel>
+where
+    image::Rgba<T>: image::Pixel<Subpixel = T>,
+    T: image::Primitive,
+{
+    let channel = |(i, name): (usize, &str)| Channel {
         name: name.to_owned(),
         values: picture
             .pixels()
             .map(|p| if i == 3 { value(p.0[3]) } else { from_srgb(value(p.0[i])) * value(p.0[3]) } as f32)
             .collect(),
         is_half: false,
-    });
-    let channels = channels.collect();
-    Ok(Layers { width, height, channels, texts: png_texts(bytes), ..Layers::default() })
+    };
+    (0..4).zip(["R", "G", "B", "A"]).map(channel).collect()
 }
 
 /// The texts of a PNG picture; empty for other formats.

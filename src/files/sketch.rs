@@ -63,12 +63,19 @@ impl Page {
     }
 }
 
+/// How SVG is read: its pictures are of no use to us, and their files are not opened.
+fn options() -> usvg::Options<'static> {
+    let images =
+        usvg::ImageHrefResolver { resolve_data: Box::new(|_, _, _| None), resolve_string: Box::new(|_, _| None) };
+    usvg::Options { image_href_resolver: images, ..usvg::Options::default() }
+}
+
 /// Decodes the strokes and outlines of an SVG.
 ///
 /// # Errors
 /// [`SketchError::Svg`], [`SketchError::NoPaths`], [`SketchError::TooManyPoints`].
 pub fn decode_sketch(bytes: &[u8]) -> Result<Page, SketchError> {
-    let tree = Tree::from_data(bytes, &usvg::Options::default()).map_err(SketchError::Svg)?;
+    let tree = Tree::from_data(bytes, &options()).map_err(SketchError::Svg)?;
     let size = tree.size();
     let mut page = Page { lines: Vec::new(), aspect: f64::from(size.width()) / f64::from(size.height()) };
     let mut points = 0;
@@ -161,7 +168,7 @@ const EM: f64 = 1000.0;
 /// # Errors
 /// [`SketchError::Font`], [`SketchError::Layout`], [`SketchError::NoOutlines`].
 pub fn letter_outlines(text: &str, bytes: &[u8]) -> Result<Vec<Vec<DVec2>>, SketchError> {
-    let mut options = usvg::Options::default();
+    let mut options = options();
     options.fontdb_mut().load_font_data(bytes.to_vec());
     let family = options.fontdb.faces().find_map(|face| face.families.first().map(|(name, _)| name.clone()));
     let face = options.fontdb.faces().next().map(|face| (face.weight.0, face.style));
@@ -216,7 +223,7 @@ fn letters(group: &Group, lines: &mut Vec<(Vec<DVec2>, bool)>) {
 /// # Errors
 /// [`SketchError::Draw`], [`SketchError::TooLarge`].
 pub fn draw_svg(svg: &str, fonts: &[&'static [u8]]) -> Result<Rgba, SketchError> {
-    let mut options = usvg::Options::default();
+    let mut options = options();
     for font in fonts {
         options.fontdb_mut().load_font_data(font.to_vec());
     }

@@ -1,7 +1,7 @@
 //! What is on disk for a while only, and is taken away even where the process has to end at once.
 
 use std::collections::BTreeSet;
-use std::fs::{self, File};
+use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -20,11 +20,11 @@ fn known() -> MutexGuard<'static, BTreeSet<PathBuf>> {
 pub struct Temporary(PathBuf);
 
 impl Temporary {
-    /// The file that `make` makes, open.
+    /// The file that `make` makes, and what `make` has of it: open, say.
     ///
     /// # Errors
     /// Those of `make`.
-    pub fn file(make: impl FnOnce() -> io::Result<NamedTempFile>) -> io::Result<(File, Self)> {
+    pub fn file<F>(make: impl FnOnce() -> io::Result<NamedTempFile<F>>) -> io::Result<(F, Self)> {
         let mut known = known();
         let (file, path) = make()?.keep().map_err(|error| error.error)?;
         known.insert(path.clone());

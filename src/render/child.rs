@@ -1,7 +1,8 @@
 //! Child processes that are killed with us.
 
 use std::io::{self, Read};
-use std::process::{Child, ExitStatus};
+use std::path::PathBuf;
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::Duration;
@@ -11,11 +12,52 @@ use crate::math::{Cancelled, Progress};
 /// Interval of the tests for cancellation.
 pub(super) const POLL: Duration = Duration::from_millis(50);
 
-/// A child process that is killed on drop.
+/// Has the program after it killed when the thread that started it ends, be it by KILL (util-linux).
+const UNTIL_DEATH: [&str; 4] = ["setpriv", "--pdeathsig", "KILL", "--"];
+
+/// A command that runs `program` in a process group of its own and, on Linux, not beyond our own death.
+///
+/// # Errors
+/// [`io::ErrorKind::NotFound`] where it is not on the PATH.
+pub(super) fn command(program: &str) -> io::Result<Command> {
+    let program = find(program).ok_or(io::ErrorKind::NotFound)?;
+    let mut command = if dies_with_us() {
+        let mut command = Command::new(UNTIL_DEATH[0]);
+        command.args(&UNTIL_DEATH[1..]).arg(program);
+        command
+    } else {
+        Command::new(program)
+    };
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut command, 0);
+    Ok(command)
+}
+
+/// Where `program` is on the PATH.
+fn find(program: &str) -> Option<PathBuf> {
+    let file = format!("{program}{}", std::env::consts::EXE_SUFFIX);
+    std::env::split_paths(&std::env::var_os("PATH")?).map(|folder| folder.join(&file)).find(|path| path.is_file())
+}
+
+/// Is there a program that binds the life of another to ours? Some systems have a lesser one of the same name.
+fn dies_with_us() -> bool {
+    let [setpriv, arguments @ ..] = UNTIL_DEATH;
+    let mut trial = Command::new(setpriv);
+    trial.args(arguments).arg("true").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    cfg!(target_os = "linux") && trial.status().is_ok_and(|status| status.success())
+}
+
+/// A child process that is killed on drop, with all that it started.
 pub(super) struct Watched(pub Child);
 
 impl Drop for Watched {
     fn drop(&mut self) {
+        // Another group may have the number of one that has been waited for.
+        #[cfg(unix)]
+        if let Ok(None) = self.0.try_wait() {
+            use rustix::process::{Pid, Signal, kill_process_group};
+            let _ = kill_process_group(Pid::from_child(&self.0), Signal::KILL);
+        }
         // Both fail only if it has exited.
         let _ = self.0.kill();
         let _ = self.0.wait();

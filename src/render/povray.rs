@@ -2,10 +2,10 @@
 
 use std::io;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::sync::mpsc::RecvTimeoutError;
 
-use super::child::{POLL, Watched, listen};
+use super::child::{POLL, Watched, command, listen};
 use crate::math::{Cancelled, Progress};
 
 /// Lines of POV-Ray's output in an error message.
@@ -70,7 +70,10 @@ impl Povray {
         progress: &Progress,
     ) -> Result<Rendered, PovrayError> {
         let [width, height] = self.size;
-        let mut command = Command::new("povray");
+        let mut command = command("povray").map_err(|error| match error.kind() {
+            io::ErrorKind::NotFound => PovrayError::Missing,
+            _ => PovrayError::Run(error),
+        })?;
         command
             .current_dir(folder)
             .args([format!("+I{scene}"), format!("+O{picture}")])
@@ -95,10 +98,7 @@ impl Povray {
             command.arg(format!("+WT{threads}"));
         }
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
-        let mut child = Watched(command.spawn().map_err(|error| match error.kind() {
-            io::ErrorKind::NotFound => PovrayError::Missing,
-            _ => PovrayError::Run(error),
-        })?);
+        let mut child = Watched(command.spawn()?);
 
         let lines = listen(child.0.stderr.take());
         let mut said = Vec::new();

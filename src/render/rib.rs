@@ -2,10 +2,10 @@
 
 use std::io;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::sync::mpsc::RecvTimeoutError;
 
-use super::child::{POLL, Watched, listen};
+use super::child::{POLL, Watched, command, listen};
 use crate::math::{Cancelled, Progress};
 
 /// Lines of a renderer's output in an error message.
@@ -63,13 +63,13 @@ impl RibRenderer {
     /// [`RibError`].
     pub fn render(self, folder: &Path, scene: &str, picture: &str, progress: &Progress) -> Result<(), RibError> {
         let program = self.program();
-        let mut command = Command::new(program);
-        command.current_dir(folder).arg(scene);
-        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut child = Watched(command.spawn().map_err(|error| match error.kind() {
+        let mut command = command(program).map_err(|error| match error.kind() {
             io::ErrorKind::NotFound => RibError::Missing(program),
             _ => RibError::Run(program, error),
-        })?);
+        })?;
+        command.current_dir(folder).arg(scene);
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = Watched(command.spawn().map_err(|error| RibError::Run(program, error))?);
         let streams = [listen(child.0.stdout.take()), listen(child.0.stderr.take())];
         let mut said: Vec<String> = Vec::new();
         for lines in streams {

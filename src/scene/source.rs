@@ -1,8 +1,6 @@
 //! Scenes as they come in.
 
-use std::path::PathBuf;
-
-use crate::files::{FileRead, Folder, Reads};
+use crate::files::{Folder, Reads};
 
 /// A scene's text and where it came from.
 #[derive(Clone, Debug)]
@@ -16,12 +14,9 @@ pub struct Source {
 }
 
 impl Source {
-    /// This scene, recording in `reads` which files are asked for: its own, where it is one on disk, and those that it names.
+    /// This scene, recording in `reads` which files that it names are asked for.
     #[must_use]
     pub fn recorded(self, reads: &Reads) -> Self {
-        if matches!(self.folder, Folder::Disk(_)) {
-            reads.add(FileRead { name: self.name.clone(), path: PathBuf::from(&self.name) });
-        }
         Self { folder: self.folder.recorded(reads), ..self }
     }
 }
