@@ -2,9 +2,11 @@
 //! range 2021). Locals carry the papers' letters.
 
 use std::f64::consts::PI;
+use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::rank::ranked;
 use crate::math::power;
 
 /// Pixels per degree of visual angle of a 0.7 m wide screen of 3840 pixels at a distance of 0.7 m.
@@ -135,10 +137,25 @@ fn seen(plane: &GreyPlane, gaussians: &[(f64, f64)], radius: i64, ppd: f64) -> G
     GreyPlane { width: plane.width, values }
 }
 
+/// The radius of all filters of colours: that of the widest Gaussian (section 4.1.1).
+fn colour_radius(ppd: f64) -> i64 {
+    libm::ceil(3.0 * libm::sqrt(0.04 / (2.0 * PI * PI)) * ppd) as i64
+}
+
+/// The standard deviation of the feature detectors, and their radius.
+fn feature_size(ppd: f64) -> (f64, i64) {
+    let sd = 0.5 * W * ppd;
+    (sd, libm::ceil(3.0 * sd) as i64)
+}
+
+/// Rows beyond a pixel that its FLIP depends on.
+fn reach(ppd: f64) -> usize {
+    colour_radius(ppd).max(feature_size(ppd).1) as usize
+}
+
 /// The perceived colours: filtered, clamped to the gamut, in Hunt-adjusted CIELAB (section 4.1).
 fn perceived(width: usize, pixels: &[Pixel], ppd: f64) -> Vec<Pixel> {
-    // The radius of all filters is that of the widest Gaussian (section 4.1.1).
-    let radius = libm::ceil(3.0 * libm::sqrt(0.04 / (2.0 * PI * PI)) * ppd) as i64;
+    let radius = colour_radius(ppd);
     let plane = |i: usize| GreyPlane { width, values: pixels.iter().map(|p| p[i]).collect() };
     let y = seen(&plane(0), &[(1.0, 0.0047)], radius, ppd);
     let c_x = seen(&plane(1), &[(1.0, 0.0053)], radius, ppd);
@@ -152,8 +169,7 @@ fn perceived(width: usize, pixels: &[Pixel], ppd: f64) -> Vec<Pixel> {
 /// The responses of the edge and the point detector at each pixel (section 4.2).
 fn features(width: usize, pixels: &[Pixel], ppd: f64) -> Vec<[f64; 2]> {
     let grey = GreyPlane { width, values: pixels.iter().map(|p| (p[0] + 16.0) / 116.0).collect() };
-    let sd = 0.5 * W * ppd;
-    let radius = libm::ceil(3.0 * sd) as i64;
+    let (sd, radius) = feature_size(ppd);
     let gauss: Vec<f64> = (-radius..=radius).map(|x| libm::exp(-(x * x) as f64 / (2.0 * sd * sd))).collect();
     // Positive and negative weights each sum to 1.
     let balanced = |weights: Vec<f64>| -> Vec<f64> {
@@ -173,15 +189,8 @@ fn features(width: usize, pixels: &[Pixel], ppd: f64) -> Vec<[f64; 2]> {
     (0..pixels.len()).map(|i| [length(ex.values[i], ey.values[i]), length(px.values[i], py.values[i])]).collect()
 }
 
-/// LDR-FLIP: the difference of each pixel in linear light, clamped to 0 to 1. `ppd` is the pixels per degree, by default
-/// [`PIXELS_PER_DEGREE`].
-///
-/// # Panics
-/// Where the pictures differ in size.
-#[must_use]
-pub fn flip_ldr(width: u32, expected: &[[f32; 3]], actual: &[[f32; 3]], ppd: f64) -> Vec<f32> {
-    assert_eq!(expected.len(), actual.len(), "pictures of the same size");
-    let width = width as usize;
+/// LDR-FLIP of pixels in linear light from 0 to 1.
+fn ldr(width: usize, [expected, actual]: [&[[f32; 3]]; 2], ppd: f64) -> Vec<f32> {
     let show = |pixels: &[[f32; 3]]| -> Vec<Pixel> {
         pixels.par_iter().map(|p| opponent(p.map(|x| f64::from(x).clamp(0.0, 1.0)))).collect()
     };
@@ -202,6 +211,54 @@ pub fn flip_ldr(width: u32, expected: &[[f32; 3]], actual: &[[f32; 3]], ppd: f64
         .collect()
 }
 
+/// Two pictures of one size, read row by row.
+pub struct Rows<'a> {
+    /// Pixels in a row, and rows.
+    pub size: [usize; 2],
+    /// The pixels of some rows in linear light, expected and actual.
+    pub read: &'a (dyn Fn(Range<usize>) -> [Vec<[f32; 3]>; 2] + Sync),
+}
+
+/// Pixels that are worked on at once.
+const BAND: usize = 1 << 19;
+/// Bytes that one of them takes meanwhile.
+const PIXEL_BYTES: u64 = 240;
+
+/// Bytes that FLIP of so many pixels takes at its peak besides the pictures: its map, and a band on its way.
+pub(super) fn bytes_needed(pixels: u64) -> u64 {
+    pixels.saturating_mul(4).saturating_add(pixels.min(BAND as u64) * PIXEL_BYTES)
+}
+
+impl Rows<'_> {
+    /// Bands of rows.
+    fn bands(&self) -> impl Iterator<Item = Range<usize>> + use<> {
+        let [width, height] = self.size;
+        let rows = (BAND / width.max(1)).max(1);
+        (0..height.div_ceil(rows)).map(move |i| i * rows..((i + 1) * rows).min(height))
+    }
+
+    /// What `flip` makes of all bands; it is given each with the rows around it that filters reach.
+    fn map(&self, ppd: f64, flip: impl Fn([&[[f32; 3]]; 2]) -> Vec<f32>) -> Vec<f32> {
+        let [width, height] = self.size;
+        let mut map = Vec::with_capacity(width * height);
+        for band in self.bands() {
+            let around = band.start.saturating_sub(reach(ppd))..(band.end + reach(ppd)).min(height);
+            let [expected, actual] = (self.read)(around.clone());
+            let all = flip([&expected, &actual]);
+            let start = (band.start - around.start) * width;
+            map.extend_from_slice(&all[start..start + band.len() * width]);
+        }
+        map
+    }
+}
+
+/// LDR-FLIP: the difference of each pixel in linear light, clamped to 0 to 1. `ppd` is the pixels per degree, by default
+/// [`PIXELS_PER_DEGREE`].
+#[must_use]
+pub fn flip_ldr(rows: &Rows<'_>, ppd: f64) -> Vec<f32> {
+    rows.map(ppd, |pixels| ldr(rows.size[0], pixels, ppd))
+}
+
 /// The ACES tone mapping of HDR-FLIP, as a rational function (Narkowicz 2015).
 fn aces(x: f64) -> f64 {
     let x = x * 0.6;
@@ -210,34 +267,36 @@ fn aces(x: f64) -> f64 {
 
 /// HDR-FLIP: the maximum of LDR-FLIP over exposures, from that at which the brightest pixel of `expected` is mapped to 0.85 to that
 /// at which its median is (Andersson et al. 2021, section 3).
-///
-/// # Panics
-/// Where the pictures differ in size.
 #[must_use]
-pub fn flip_hdr(width: u32, expected: &[[f32; 3]], actual: &[[f32; 3]], ppd: f64) -> Vec<f32> {
-    let mut luminance: Vec<f64> = expected.iter().map(|p| xyz(p.map(f64::from))[1]).filter(|y| y.is_finite()).collect();
-    luminance.sort_by(f64::total_cmp);
+pub fn flip_hdr(rows: &Rows<'_>, ppd: f64) -> Vec<f32> {
+    let luminance = |visit: &mut dyn FnMut(f64)| {
+        for [expected, _] in rows.bands().map(rows.read) {
+            expected.iter().map(|p| xyz(p.map(f64::from))[1]).filter(|y| y.is_finite()).for_each(&mut *visit);
+        }
+    };
     // The input that tone mapping maps to 0.85.
     let t = 0.85;
     let (a, b, c) = (0.36 * (2.51 - t * 2.43), 0.6 * (0.03 - t * 0.59), -t * 0.14);
     let x_max = (-b + libm::sqrt(b * b - 4.0 * a * c)) / (2.0 * a);
-    let median = luminance.get(luminance.len() / 2).copied().unwrap_or(1.0).max(f64::from(f32::EPSILON));
-    let most = luminance.last().copied().unwrap_or(1.0).max(median);
+    let median = ranked(&luminance, |count| count / 2).unwrap_or(1.0).max(f64::from(f32::EPSILON));
+    let most = ranked(&luminance, |count| count.saturating_sub(1)).unwrap_or(1.0).max(median);
     let (start, stop) = (libm::log2(x_max / most), libm::log2(x_max / median));
     let count = libm::ceil(stop - start).clamp(2.0, 64.0);
-    let mut flip = vec![0.0_f32; expected.len()];
-    for i in 0..count as u32 {
-        let scale = libm::exp2(start + (stop - start) * f64::from(i) / (count - 1.0));
-        let expose = |pixels: &[[f32; 3]]| -> Vec<[f32; 3]> {
-            pixels.par_iter().map(|p| p.map(|x| aces(f64::from(x).max(0.0) * scale) as f32)).collect()
-        };
-        for (most, x) in flip.iter_mut().zip(flip_ldr(width, &expose(expected), &expose(actual), ppd)) {
-            if x > *most {
-                *most = x;
+    rows.map(ppd, |pixels| {
+        let mut flip = vec![0.0_f32; pixels[0].len()];
+        for i in 0..count as u32 {
+            let scale = libm::exp2(start + (stop - start) * f64::from(i) / (count - 1.0));
+            let [expected, actual] = pixels.map(|pixels| -> Vec<[f32; 3]> {
+                pixels.par_iter().map(|p| p.map(|x| aces(f64::from(x).max(0.0) * scale) as f32)).collect()
+            });
+            for (most, x) in flip.iter_mut().zip(ldr(rows.size[0], [&expected, &actual], ppd)) {
+                if x > *most {
+                    *most = x;
+                }
             }
         }
-    }
-    flip
+        flip
+    })
 }
 
 #[cfg(test)]
@@ -274,6 +333,14 @@ mod tests {
         }
     }
 
+    type Flip = fn(&Rows<'_>, f64) -> Vec<f32>;
+
+    fn flip(flip: Flip, width: usize, [expected, actual]: [&[[f32; 3]]; 2]) -> Vec<f32> {
+        let read =
+            |rows: Range<usize>| [expected, actual].map(|pixels| pixels[rows.start * width..rows.end * width].to_vec());
+        flip(&Rows { size: [width, expected.len() / width], read: &read }, PIXELS_PER_DEGREE)
+    }
+
     fn linear(pixels: &[[u8; 3]]) -> Vec<[f32; 3]> {
         pixels.iter().map(|&p| Colour::from_srgb(p).0.map(|x| x as f32)).collect()
     }
@@ -283,7 +350,7 @@ mod tests {
     fn agrees_with_nvidia() {
         for (width, height, seed) in [(64, 48, 1), (33, 70, 2), (5, 3, 3)] {
             let [expected, actual] = pair(width, height, seed);
-            let ours = flip_ldr(width, &linear(&expected), &linear(&actual), PIXELS_PER_DEGREE);
+            let ours = flip(flip_ldr, width as usize, [&linear(&expected), &linear(&actual)]);
             let picture = |p: &[[u8; 3]]| nv_flip::FlipImageRgb8::with_data(width, height, p.as_flattened());
             let theirs = nv_flip::flip(picture(&expected), picture(&actual), PIXELS_PER_DEGREE as f32);
             let worst = ours.iter().zip(theirs.to_vec()).map(|(x, y)| (x - y).abs()).fold(0.0, f32::max);
@@ -304,21 +371,30 @@ mod tests {
             expected.push([v, v * 0.5 + 0.02, blue]);
             actual.push([v * brighter, v * 0.5 + 0.02, blue * brighter + 0.001]);
         }
-        let flip = flip_hdr(width, &expected, &actual, PIXELS_PER_DEGREE);
+        let flip = flip(flip_hdr, width as usize, [&expected, &actual]);
         let mean = flip.iter().sum::<f32>() / flip.len() as f32;
         assert!((mean - 0.043_700).abs() < 1e-4, "{mean}");
         assert!((flip[15 * 48 + 25] - 0.332_805).abs() < 1e-4 && (flip[3 * 48 + 3] - 0.017_351).abs() < 1e-4);
+    }
+
+    /// Bands give what the whole picture gives, to the bit.
+    #[test]
+    fn bands_do_not_show() {
+        let (width, height) = (16_384, 75);
+        let [expected, actual] = pair(width, height, 5).map(|pixels| linear(&pixels));
+        let whole = ldr(width as usize, [&expected, &actual], PIXELS_PER_DEGREE);
+        assert!(flip(flip_ldr, width as usize, [&expected, &actual]) == whole);
     }
 
     #[test]
     fn the_same_is_no_difference() {
         let [expected, _] = pair(20, 20, 4);
         let pixels = linear(&expected);
-        assert!(flip_ldr(20, &pixels, &pixels, PIXELS_PER_DEGREE).iter().all(|&x| x == 0.0));
+        assert!(flip(flip_ldr, 20, [&pixels, &pixels]).iter().all(|&x| x == 0.0));
         let bright: Vec<[f32; 3]> = pixels.iter().map(|p| p.map(|x| x * 40.0)).collect();
-        assert!(flip_hdr(20, &bright, &bright, PIXELS_PER_DEGREE).iter().all(|&x| x == 0.0));
-        assert!(flip_hdr(20, &bright, &pixels, PIXELS_PER_DEGREE).iter().all(|&x| x > 0.0));
+        assert!(flip(flip_hdr, 20, [&bright, &bright]).iter().all(|&x| x == 0.0));
+        assert!(flip(flip_hdr, 20, [&bright, &pixels]).iter().all(|&x| x > 0.0));
         let black = vec![[0.0; 3]; 4];
-        assert!(flip_hdr(2, &black, &black, PIXELS_PER_DEGREE).iter().all(|&x| x == 0.0));
+        assert!(flip(flip_hdr, 2, [&black, &black]).iter().all(|&x| x == 0.0));
     }
 }

@@ -1,9 +1,12 @@
 //! Image difference metrics.
 
+use std::ops::Range;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{PIXELS_PER_DEGREE, flip_hdr, flip_ldr};
+use super::flip::{self, PIXELS_PER_DEGREE, Rows, flip_hdr, flip_ldr};
+use super::rank::ranked;
 use crate::math::to_srgb;
 use crate::raster::Layers;
 
@@ -134,6 +137,15 @@ fn chosen_channels(picture: &Layers, chosen: &[String]) -> Result<Vec<String>, C
     Ok(all)
 }
 
+/// Bytes that comparing two pictures of so many pixels and channels each takes, from reading them to their [`Measures`].
+#[must_use]
+pub fn bytes_needed(pixels: [u64; 2], channels: [u64; 2]) -> u64 {
+    let samples = [0, 1].map(|i| pixels[i].saturating_mul(channels[i]).saturating_mul(4));
+    // A decoder has the picture as it was stored besides its samples.
+    let decoded = pixels[1].saturating_mul(8);
+    samples[0].saturating_add(samples[1]).saturating_add(decoded.max(flip::bytes_needed(pixels[0])))
+}
+
 /// The differences between `actual` and `expected` in the channels that `chosen` selects. FLIP compares red, green and blue if
 /// they are among them, otherwise the first channel as grey. `is_hdr` compares linear light, otherwise values are
 /// sRGB-encoded.
@@ -155,19 +167,23 @@ pub fn measure(expected: &Layers, actual: &Layers, chosen: &[String], is_hdr: bo
         true => f64::from(x),
         false => to_srgb(f64::from(x)),
     };
-    let pixels = expected.width as usize * expected.height as usize;
-    let mut worst = vec![0.0_f64; pixels];
-    let mut squares = 0.0;
-    for ((a, b), name) in pairs.iter().zip(&names) {
-        for i in 0..pixels {
-            // Equal bits, also of infinities, are no difference.
-            let d = if a[i].to_bits() == b[i].to_bits() { 0.0 } else { (show(a[i], name) - show(b[i], name)).abs() };
-            let d = if d.is_nan() { f64::INFINITY } else { d };
+    let [width, height] = [expected.width, expected.height].map(|side| side as usize);
+    let pixels = width * height;
+    let difference = |c: usize, i: usize| {
+        let (a, b) = (pairs[c].0[i], pairs[c].1[i]);
+        // Equal bits, also of infinities, are no difference.
+        let d = if a.to_bits() == b.to_bits() { 0.0 } else { (show(a, &names[c]) - show(b, &names[c])).abs() };
+        if d.is_nan() { f64::INFINITY } else { d }
+    };
+    let (mut squares, mut max, mut noticed) = (0.0, 0.0_f64, 0_usize);
+    for i in 0..pixels {
+        let mut worst = 0.0_f64;
+        for d in (0..pairs.len()).map(|c| difference(c, i)) {
             squares += d * d;
-            if d > worst[i] {
-                worst[i] = d;
-            }
+            worst = worst.max(d);
         }
+        max = max.max(worst);
+        noticed += usize::from(worst > NOTICED);
     }
     let of_layer = |c: &str| names.iter().find(|n| *n == c || n.ends_with(&format!(".{c}"))).map(String::as_str);
     let first = names.first().map_or("", String::as_str);
@@ -175,22 +191,22 @@ pub fn measure(expected: &Layers, actual: &Layers, chosen: &[String], is_hdr: bo
         (Some(r), Some(g), Some(b)) => [r, g, b],
         _ => [first; 3],
     };
+    let colours = [expected, actual].map(|picture| rgb.map(|name| picture.channel(name).unwrap_or(&[])));
     // FLIP is undefined for infinities.
-    let finite = |picture: &Layers| -> Vec<[f32; 3]> {
-        let pixels = picture.pixels(rgb).unwrap_or_default();
-        pixels.into_iter().map(|p| p.map(|x| if x.is_finite() { x } else { f32::MAX.sqrt() })).collect()
+    let finite = |x: f32| if x.is_finite() { x } else { f32::MAX.sqrt() };
+    let read = |rows: Range<usize>| {
+        colours.map(|colours| (rows.start * width..rows.end * width).map(|i| colours.map(|c| finite(c[i]))).collect())
     };
-    let flip = if is_hdr { flip_hdr } else { flip_ldr };
-    let map = flip(expected.width, &finite(expected), &finite(actual), PIXELS_PER_DEGREE);
-    let mut sorted = map.clone();
-    sorted.sort_by(f32::total_cmp);
+    let rows = Rows { size: [width, height], read: &read };
+    let map = if is_hdr { flip_hdr(&rows, PIXELS_PER_DEGREE) } else { flip_ldr(&rows, PIXELS_PER_DEGREE) };
+    let values = |visit: &mut dyn FnMut(f64)| map.iter().map(|&x| f64::from(x)).for_each(visit);
     Ok(Measures {
         flip: map.iter().map(|&x| f64::from(x)).sum::<f64>() / pixels as f64,
-        flip_95: sorted.get((pixels * 95).div_ceil(100).max(1) - 1).map_or(0.0, |&x| f64::from(x)),
-        flip_max: sorted.last().map_or(0.0, |&x| f64::from(x)),
-        max: worst.iter().copied().fold(0.0, f64::max),
+        flip_95: ranked(&values, |count| (count * 95).div_ceil(100).max(1) - 1).unwrap_or(0.0),
+        flip_max: map.iter().copied().fold(0.0, f32::max).into(),
+        max,
         rms: libm::sqrt(squares / (pixels * names.len().max(1)) as f64),
-        share: worst.iter().filter(|d| **d > NOTICED).count() as f64 / pixels as f64,
+        share: noticed as f64 / pixels as f64,
         map,
     })
 }

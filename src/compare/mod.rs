@@ -4,10 +4,11 @@
 
 mod flip;
 mod measure;
+mod rank;
 mod report;
 mod scene_change;
 
-pub use flip::{PIXELS_PER_DEGREE, flip_hdr, flip_ldr};
-pub use measure::{CompareError, Measures, Metric, measure};
+pub use flip::{PIXELS_PER_DEGREE, Rows, flip_hdr, flip_ldr};
+pub use measure::{CompareError, Measures, Metric, bytes_needed, measure};
 pub use report::{Outcome, Pair, Panel, html, junit, summary};
 pub use scene_change::changes;

@@ -120,12 +120,18 @@ fn fill(text: &str, values: minijinja::Value) -> String {
     engine.render_str(text, values).unwrap_or_else(|error| error.to_string())
 }
 
+/// A text without characters that XML cannot hold (XML 1.0, section 2.2), escaped or not.
+fn storable(text: &str) -> String {
+    let is_stored = |c: char| !c.is_control() || "\t\n\r".contains(c);
+    text.chars().map(|c| if is_stored(c) && !"\u{fffe}\u{ffff}".contains(c) { c } else { '\u{fffd}' }).collect()
+}
+
 /// JUnit XML with a test case for each pair.
 #[must_use]
 pub fn junit(pairs: &[Pair]) -> String {
     let cases: Vec<_> = pairs
         .iter()
-        .map(|p| context! { name => &p.name, told => p.line(), same => p.is_same(), failed => p.outcome == Outcome::Failed })
+        .map(|p| context! { name => storable(&p.name), told => storable(&p.line()), same => p.is_same(), failed => p.outcome == Outcome::Failed })
         .collect();
     let failures = pairs.iter().filter(|p| !p.is_same() && p.outcome != Outcome::Failed).count();
     let errors = pairs.iter().filter(|p| p.outcome == Outcome::Failed).count();
@@ -145,9 +151,9 @@ pub fn html(pairs: &[(Pair, Panel)]) -> String {
         .iter()
         .map(|(pair, panel)| {
             context! {
-                name => &pair.name,
+                name => storable(&pair.name),
                 outcome => pair.outcome.name(),
-                told => pair.told(),
+                told => storable(&pair.told()),
                 changes => &pair.changes,
                 expected => url(&panel.expected),
                 actual => url(&panel.actual),
