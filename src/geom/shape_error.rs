@@ -15,6 +15,15 @@ pub enum ShapeError {
     /// A step's space refers to what the step grows.
     #[error("step `{0}` grows in what it grew itself")]
     CircularStep(String),
+    /// A combination that names a shape twice.
+    #[error("shape `{0}` is combined twice: once is enough")]
+    Twice(String),
+    /// A chain of shapes that is too long.
+    #[error("more than {0} shapes are made of one another: give the last of them where it is used")]
+    TooDeep(usize),
+    /// Too many solids.
+    #[error("it is made of more than {0} solids, each as often as it is named")]
+    TooManySolids(u64),
     /// A combination of no shapes.
     #[error("combine at least one shape")]
     NoParts,

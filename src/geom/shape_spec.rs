@@ -1,7 +1,7 @@
 //! Shapes as a scene writes them, and how their names and files are looked up.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -277,7 +277,7 @@ impl ShapeSpec {
     /// # Errors
     /// [`ShapeError`]: unknown or circular names, sizes that are not positive, files without outlines or closed meshes.
     pub fn resolve(&self, named: &BTreeMap<String, Self>, files: &dyn ShapeFiles) -> Result<Shape, ShapeError> {
-        ShapeLookup { named, files, pending: Vec::new() }.shape(self)
+        ShapeLookup { named, files, pending: Vec::new(), done: BTreeMap::new(), solids: 0 }.shape(self)
     }
 }
 
@@ -287,30 +287,67 @@ struct ShapeLookup<'a> {
     files: &'a dyn ShapeFiles,
     /// The names whose resolution has begun, to detect circles.
     pending: Vec<String>,
+    /// Shapes that others share, with the number of their solids.
+    done: BTreeMap<String, (Shape, u64)>,
+    /// Solids so far, each as often as a distance asks for it.
+    solids: u64,
 }
+
+/// A distance asks at most so many solids.
+const MOST_SOLIDS: u64 = 100_000;
+/// Shapes are made of each other to this depth at most.
+const MOST_DEPTH: usize = 100;
 
 impl ShapeLookup<'_> {
     fn shape(&mut self, spec: &ShapeSpec) -> Result<Shape, ShapeError> {
         let solid = match spec {
             ShapeSpec::Inline(solid) => solid,
             ShapeSpec::Named(Ref { name, .. }) => {
-                if self.pending.contains(name) {
-                    return Err(ShapeError::Circular(name.clone()));
-                }
-                let spec = self.named.get(name);
-                let spec = spec.ok_or_else(|| ShapeError::Lookup(unknown("shape", name, self.named.keys())))?;
-                self.pending.push(name.clone());
-                let shape = self.shape(spec);
-                self.pending.pop();
-                return shape;
+                return self.named_shape(name);
             }
         };
+        self.count(1)?;
         self.solid(solid)
+    }
+
+    fn named_shape(&mut self, name: &str) -> Result<Shape, ShapeError> {
+        if let Some((shape, solids)) = self.done.get(name).cloned() {
+            self.count(solids)?;
+            return Ok(shape);
+        }
+        if self.pending.iter().any(|pending| pending == name) {
+            return Err(ShapeError::Circular(name.to_owned()));
+        }
+        if self.pending.len() >= MOST_DEPTH {
+            return Err(ShapeError::TooDeep(MOST_DEPTH));
+        }
+        let spec = self.named.get(name);
+        let spec = spec.ok_or_else(|| ShapeError::Lookup(unknown("shape", name, self.named.keys())))?;
+        let before = self.solids;
+        self.pending.push(name.to_owned());
+        let shape = self.shape(spec);
+        self.pending.pop();
+        let shape = shape?;
+        self.done.insert(name.to_owned(), (shape.clone(), self.solids - before));
+        Ok(shape)
+    }
+
+    fn count(&mut self, solids: u64) -> Result<(), ShapeError> {
+        self.solids = self.solids.saturating_add(solids);
+        if self.solids > MOST_SOLIDS { Err(ShapeError::TooManySolids(MOST_SOLIDS)) } else { Ok(()) }
     }
 
     fn all(&mut self, specs: &[ShapeSpec]) -> Result<Vec<Shape>, ShapeError> {
         if specs.is_empty() {
             return Err(ShapeError::NoParts);
+        }
+        let mut names = BTreeSet::new();
+        for spec in specs {
+            if let ShapeSpec::Named(Ref { name, .. }) = spec
+                && !names.insert(name)
+            {
+                return Err(ShapeError::Twice(name.clone()));
+            }
         }
         specs.iter().map(|spec| self.shape(spec)).collect()
     }

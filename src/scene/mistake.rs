@@ -86,9 +86,22 @@ impl SceneError {
     }
 }
 
+/// Mistakes that are told of a scene: those after them are counted.
+const MOST_TOLD: usize = 20;
+
+impl SceneError {
+    /// The mistakes that are told, and the number of the others.
+    #[must_use]
+    pub fn told(&self) -> (&[Mistake], usize) {
+        let told = &self.mistakes[..self.mistakes.len().min(MOST_TOLD)];
+        (told, self.mistakes.len() - told.len())
+    }
+}
+
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, mistake) in self.mistakes.iter().enumerate() {
+        let (told, more) = self.told();
+        for (i, mistake) in told.iter().enumerate() {
             if i > 0 {
                 writeln!(f)?;
             }
@@ -102,7 +115,7 @@ impl fmt::Display for SceneError {
             }
             write!(f, "{}", mistake.message)?;
         }
-        Ok(())
+        if more > 0 { write!(f, "\n... and {more} more") } else { Ok(()) }
     }
 }
 

@@ -76,7 +76,11 @@ impl Resolver<'_> {
     fn object_steps(&mut self, place: &str, spec: &ObjectSpec) -> Option<Vec<usize>> {
         let mut steps = Vec::new();
         for (i, step) in spec.grow.iter().enumerate() {
-            steps.push(self.find(&format!("{place}.grow.{i}"), "step", step, self.scene.grow.keys()));
+            let place = format!("{place}.grow.{i}");
+            if spec.grow[..i].iter().any(|other| other.name == step.name) {
+                self.wrong(&place, format!("step `{}` is listed twice", step.name));
+            }
+            steps.push(self.find(&place, "step", step, self.scene.grow.keys()));
         }
         steps.into_iter().collect()
     }

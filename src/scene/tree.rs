@@ -217,6 +217,9 @@ fn set(entry: &mut Entry, keys: &[&str], value: Value) -> bool {
 /// The keys whose tables are merged when `like` takes things over; others are replaced whole.
 const MERGED: [&str; 5] = ["weights", "field", "nodes", "lattice", "to"];
 
+/// A chain of `like` has at most this many links.
+const MOST_LIKE: usize = 100;
+
 /// Fills in what spaces, steps and objects take from others by `like`.
 pub(super) fn inherit(root: &mut Entry, mistakes: &mut Vec<Mistake>) {
     for kind in ["space", "grow", "object"] {
@@ -227,24 +230,20 @@ pub(super) fn inherit(root: &mut Entry, mistakes: &mut Vec<Mistake>) {
             let mut chain = vec![name.clone()];
             // From the nearest to the furthest: what is there already stays.
             while let Some(base) = chain.last().and_then(|last| like(named, last)) {
-                let Some(from) = named.get(&base).cloned() else {
-                    mistakes.push(Mistake {
-                        span: named.get(&name).and_then(|e| e.find_span("like")),
-                        place: format!("{kind}.{name}.like"),
-                        message: crate::math::unknown(kind, &base, named.keys()),
-                    });
-                    break;
+                let from = named.get(&base).cloned();
+                let wrong = match &from {
+                    None => Some(crate::math::unknown(kind, &base, named.keys())),
+                    Some(_) if chain.contains(&base) => Some(format!("{kind} `{name}` is like itself")),
+                    Some(_) if chain.len() > MOST_LIKE => Some(format!("more than {MOST_LIKE} are like one another")),
+                    Some(_) => None,
                 };
-                if chain.contains(&base) {
-                    mistakes.push(Mistake {
-                        span: named.get(&name).and_then(|e| e.find_span("like")),
-                        place: format!("{kind}.{name}.like"),
-                        message: format!("{kind} `{name}` is like itself"),
-                    });
+                if let Some(message) = wrong {
+                    let span = named.get(&name).and_then(|e| e.find_span("like"));
+                    mistakes.push(Mistake { span, place: format!("{kind}.{name}.like"), message });
                     break;
                 }
-                if let Some(to) = named.get_mut(&name) {
-                    merge(to, &from);
+                if let (Some(to), Some(from)) = (named.get_mut(&name), &from) {
+                    merge(to, from);
                 }
                 chain.push(base);
             }
