@@ -3,6 +3,7 @@
 //! Later stages need never handle a scene's own units or names: the model stands on its own. Everything here can be
 //! cancelled.
 
+mod check;
 mod dress;
 mod error;
 mod grow;
@@ -12,6 +13,7 @@ mod model;
 mod plants;
 mod recipe;
 
+pub use check::check;
 pub use error::{AssembleError, ObjectKey, ObjectProblem};
 pub use grow::grow;
 pub use memory::bytes_needed;

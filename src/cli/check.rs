@@ -4,16 +4,21 @@ use super::args::CheckArgs;
 use super::console::Console;
 use super::error::Failure;
 use super::jobs::Jobs;
-use crate::assemble::AssembleError;
-use crate::scene::{Stage, check_claims};
+use crate::scene::{self, check_claims};
 
 pub fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
     let jobs = Jobs::new(&args.scene, console)?;
     let mut worst = None;
     let mut broken = Vec::new();
     for job in &jobs.list {
-        let scene = match jobs.load(job) {
+        let progress = console.progress(job.name());
+        let checked = jobs.load(job).and_then(|scene| {
+            scene::check(&scene, jobs.max_memory(), &progress)?;
+            Ok(scene)
+        });
+        let scene = match checked {
             Ok(scene) => scene,
+            Err(Failure::Stopped) => return Err(Failure::Stopped),
             Err(failure) => {
                 // The last failure is printed by whoever takes the result.
                 if let Some(earlier) = worst.replace(failure) {
@@ -22,10 +27,6 @@ pub fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
                 continue;
             }
         };
-        let needed = scene.bytes_needed();
-        if needed > jobs.max_memory() {
-            return Err(Stage::Memory(AssembleError::Memory { needed, limit: jobs.max_memory() }).into());
-        }
         if !args.claims {
             if console.json {
                 console.result(&serde_json::json!({ "scene": job.name(), "mistakes": [] }));
@@ -34,7 +35,6 @@ pub fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
             }
             continue;
         }
-        let progress = console.progress(job.name());
         let grown = jobs.grow(&scene, &[], console, &progress)?;
         console.done();
         for finding in check_claims(&scene, &grown) {

@@ -33,6 +33,7 @@ mod spec;
 mod starts;
 mod step;
 mod targets;
+mod trial;
 mod voxels;
 
 pub use baselines::{DbmSpec, DlaSpec, SIDE, Solver, Walk};

@@ -112,6 +112,15 @@ pub trait Method: Any + fmt::Debug + Send + Sync {
     /// [`GrowError`].
     fn grow(&self, step: &Step, context: &Context<'_>) -> Result<Grown, GrowError>;
 
+    /// Looks, without growing, whether `step` has places for what it starts from and leads to, as far as no other step decides
+    /// that; so much is known before growth.
+    ///
+    /// # Errors
+    /// [`GrowError`].
+    fn check_places(&self, _step: &Step, _context: &Context<'_>) -> Result<(), GrowError> {
+        Ok(())
+    }
+
     /// Bytes that growing `step` takes at its peak.
     fn bytes_needed(&self, step: &Step) -> u64;
 
@@ -233,6 +242,15 @@ impl Step {
     /// range; [`GrowError::Cancelled`].
     pub fn grow(&self, context: &Context<'_>) -> Result<Grown, GrowError> {
         self.method.grow(self, context)
+    }
+
+    /// Looks, without growing, whether it has the places that it needs, as far as no other step decides that.
+    ///
+    /// # Errors
+    /// As [`Step::grow`].
+    pub fn check_places(&self, context: &Context<'_>) -> Result<(), GrowError> {
+        let is_elsewhere = self.repeat.is_some() || !self.solids().is_empty();
+        if is_elsewhere { Ok(()) } else { self.method.check_places(self, context) }
     }
 
     /// Do both grow in the same space, together?

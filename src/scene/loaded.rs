@@ -116,6 +116,21 @@ impl Loaded {
     }
 }
 
+/// Looks for everything that keeps `scene` from growing within `max_memory` bytes, as far as that is known before.
+///
+/// # Errors
+/// [`Stage`]: what [`assemble::check`] finds, at its places in the scene.
+pub fn check(scene: &Loaded, max_memory: u64, progress: &Progress) -> Result<(), Stage> {
+    let mut mistakes = Vec::new();
+    for error in assemble::check(&scene.recipe, max_memory, progress) {
+        match scene.place(error) {
+            Stage::Scene(error) => mistakes.extend(error.mistakes),
+            other => return Err(other),
+        }
+    }
+    if mistakes.is_empty() { Ok(()) } else { Err(SceneError::new(&scene.source, mistakes).into()) }
+}
+
 /// Grows every step of `scene` within `max_memory` bytes; `show` lists what construction drawings need.
 ///
 /// # Errors

@@ -24,7 +24,7 @@ pub use claim::{Claim, Claimed, Quantity};
 pub use document::{CopySpec, ObjectSpec, Scene, TileSpec};
 pub use findings::{Finding, check_claims};
 pub use load::{load, load_frame};
-pub use loaded::{Loaded, Stage, grow, model};
+pub use loaded::{Loaded, Stage, check, grow, model};
 pub use mistake::{Included, Mistake, SceneError, Span};
 pub use schema::{schema, schema_markdown};
 pub use source::Source;

@@ -18,6 +18,7 @@ use crate::grow::spec::StepSpec;
 use crate::grow::starts::starts;
 use crate::grow::step::{Context, Method, Step, Unreached};
 use crate::grow::targets::targets;
+use crate::grow::trial::try_places;
 use crate::math::{Cancelled, DVec3, Progress, Stream, power};
 use crate::skeleton::Skeleton;
 
@@ -50,6 +51,10 @@ impl Method for DbmSpec {
         let skeleton = refined(step, skeleton, space, context)?;
         let [nodes, edges] = site.size();
         step.finish_with(Grown { nodes, edges, settled, ..Grown::default() }, skeleton, context)
+    }
+
+    fn check_places(&self, step: &Step, context: &Context<'_>) -> Result<(), GrowError> {
+        try_places(step, &mut OnLattice::new(step, step.lattice()?, context)?, context)
     }
 
     fn bytes_needed(&self, step: &Step) -> u64 {

@@ -13,6 +13,7 @@ use crate::grow::space::Space;
 use crate::grow::spaces::OnLattice;
 use crate::grow::starts::starts;
 use crate::grow::step::{Context, Method, Step};
+use crate::grow::trial::try_places;
 use crate::math::{Cancelled, DVec3, Progress, Stream, from_height};
 use crate::skeleton::{Path, Skeleton, SkeletonNode};
 
@@ -178,6 +179,10 @@ impl Method for DlaSpec {
         let settled = skeleton.nodes.len() as u64;
         let [nodes, edges] = site.size();
         step.finish_with(Grown { nodes, edges, settled, ..Grown::default() }, skeleton, context)
+    }
+
+    fn check_places(&self, step: &Step, context: &Context<'_>) -> Result<(), GrowError> {
+        try_places(step, &mut OnLattice::new(step, step.lattice()?, context)?, context)
     }
 
     fn bytes_needed(&self, step: &Step) -> u64 {

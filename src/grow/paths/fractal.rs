@@ -19,7 +19,7 @@ use crate::grow::site::Site;
 use crate::grow::spaces::OnLattice;
 use crate::grow::spec::StepSpec;
 use crate::grow::starts::{Placed, starts};
-use crate::grow::step::{Context, Method, Step};
+use crate::grow::step::{Context, Generators, Method, Step};
 use crate::math::{DVec3, Stream, mix, power};
 use crate::plan::{Goal, Plan, plan_delayed};
 use crate::skeleton::{Path, Skeleton, SkeletonNode};
@@ -106,6 +106,15 @@ impl Method for FractalSpec {
         let skeleton = refined(step, growth.skeleton, space, context)?;
         let [nodes, edges] = site.size();
         step.finish_with(Grown { nodes, edges, settled, ..Grown::default() }, skeleton, context)
+    }
+
+    fn check_places(&self, step: &Step, context: &Context<'_>) -> Result<(), GrowError> {
+        let mut site = OnLattice::new(step, step.lattice()?, context)?;
+        let starts = match &step.source {
+            Generators::Steps(..) => Vec::new(),
+            _ => starts(step, &mut site, context)?,
+        };
+        FractalGrowth::new(self, step, &site.lattice, &starts).map(|_| ())
     }
 
     fn bytes_needed(&self, step: &Step) -> u64 {

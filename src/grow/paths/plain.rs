@@ -13,8 +13,9 @@ use crate::grow::site::{PathSite, PathTree};
 use crate::grow::space::Space;
 use crate::grow::spaces::{OnScatter, on_lattice};
 use crate::grow::starts::{delayed, starts};
-use crate::grow::step::{Context, Method, Step, Unreached};
+use crate::grow::step::{Context, Generators, Method, Step, Unreached};
 use crate::grow::targets::{Endpoint, Leg, targets};
+use crate::grow::trial::try_places;
 use crate::math::DVec3;
 use crate::skeleton::Skeleton;
 
@@ -50,6 +51,16 @@ impl Method for Paths {
             }
             Some(Space::Voxels(_)) => Err(step.error(Key::Space, Problem::WrongSpace("nodes to plan among"))),
             None => Err(step.error(Key::Space, Problem::NoSpace)),
+        }
+    }
+
+    fn check_places(&self, step: &Step, context: &Context<'_>) -> Result<(), GrowError> {
+        match &step.space {
+            Some(Space::Lattice(space)) => try_places(step, on_lattice(step, space, context)?.as_mut(), context),
+            // Other steps decide where nodes lie.
+            Some(Space::Scatter(_)) if matches!(step.source, Generators::Steps(..)) => Ok(()),
+            Some(Space::Scatter(space)) => try_places(step, &mut OnScatter::new(step, space, context)?, context),
+            Some(Space::Voxels(_)) | None => Ok(()),
         }
     }
 

@@ -17,6 +17,7 @@ use crate::grow::site::Site;
 use crate::grow::spaces::{LatticeSpace, OnLattice};
 use crate::grow::starts::starts;
 use crate::grow::step::{Context, Method, Step, Yield};
+use crate::grow::trial::try_places;
 use crate::math::{DVec2, DVec3, Point};
 use crate::plan::{Goal, plan, plan_delayed};
 use crate::raster::{contours, rings};
@@ -168,6 +169,10 @@ impl Method for RegionsSpec {
         let [nodes, edges] = site.size();
         let grown = Grown { nodes, edges, settled, regions: Some(regions), ..Grown::default() };
         step.finish_with(grown, Skeleton::new(step.classes.clone()), context)
+    }
+
+    fn check_places(&self, step: &Step, context: &Context<'_>) -> Result<(), GrowError> {
+        try_places(step, &mut OnLattice::new(step, step.lattice()?, context)?, context)
     }
 
     fn bytes_needed(&self, step: &Step) -> u64 {

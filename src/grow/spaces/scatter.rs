@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::geom::{Shape, ShapeSpec, Solid};
+use crate::geom::{Bounds, Shape, ShapeSpec, Solid};
 use crate::graph::{
     CostField, EdgeWeights, Joining, Region, Scatter, ScatterError, ScatterPlan, WeightError, WeightTable,
     poisson_points, scatter_bytes, scatter_estimate,
@@ -89,6 +89,14 @@ pub struct Clusters {
     pub neck: f64,
 }
 
+impl Clusters {
+    /// What spheres and cones lie in, wherever their points are.
+    fn bounds(&self) -> Bounds {
+        let foot = Bounds { min: self.foot, max: self.foot }.grown(self.neck);
+        self.inside.bounds().grown(self.radius).union(foot)
+    }
+}
+
 /// Clusters are counted in a byte.
 pub const MOST_CLUSTERS: usize = 64;
 
@@ -154,8 +162,8 @@ impl ScatterSpace {
     /// About how many nodes it has.
     #[must_use]
     pub fn estimate(&self) -> f64 {
-        let clusters = self.clusters.as_ref().map(|c| c.inside.bounds().grown(c.radius));
-        let bounds = clusters.map_or(self.shape.bounds(), |b| b.union(self.shape.bounds()));
+        let own = self.shape.bounds();
+        let bounds = self.clusters.as_ref().map_or(own, |clusters| own.union(clusters.bounds()));
         scatter_estimate([bounds.min, bounds.max], self.spacing, self.is_plane)
     }
 
