@@ -25,6 +25,12 @@ pub struct Args {
     /// Threads to use; all cores by default. The result does not depend on it
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// End, with exit code 124, if not done after so long
+    #[arg(long, global = true, value_name = "SECONDS", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    pub max_seconds: Option<u64>,
+    /// Write no file with more bytes than this: a number, or as 500M, 8G (Unix)
+    #[arg(long, global = true, value_name = "BYTES", value_parser = parse_bytes)]
+    pub max_bytes: Option<u64>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -58,7 +64,7 @@ pub enum Command {
 pub struct SceneArgs {
     /// Scene files, or names of embedded scenes (see `list`)
     #[arg(required = true, value_name = "SCENE")]
-    pub scenes: Vec<String>,
+    pub scenes: Vec<PathBuf>,
     /// Change a value of the scene, as in grow.elm.to.limbs.count=30, or grow.elm.from.at.0=[1,0,0]
     #[arg(long, value_name = "PATH=VALUE", value_parser = parse_override)]
     pub set: Vec<Override>,
@@ -77,10 +83,23 @@ pub struct SceneArgs {
     /// Size of the picture in pixels, in place of the scene's own
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
+    #[command(flatten)]
+    pub limits: LimitArgs,
+}
+
+/// What scenes may take and read.
+#[derive(Debug, ClapArgs)]
+pub struct LimitArgs {
     /// Most memory to take: bytes, or as 500M, 8G; three quarters of what the machine, its control group or its Slurm
     /// allocation has, by default
     #[arg(long, value_name = "BYTES", value_parser = parse_bytes)]
     pub max_memory: Option<u64>,
+    /// Let scenes read only what is below their own folder, wherever links lead: for scenes of strangers
+    #[arg(long)]
+    pub confined: bool,
+    /// Let them read below this folder too
+    #[arg(long, value_name = "DIR", requires = "confined")]
+    pub allow: Vec<PathBuf>,
 }
 
 #[derive(Debug, ClapArgs)]
@@ -115,10 +134,10 @@ pub struct RenderArgs {
     /// Fill in the templates in this folder in place of the program's own
     #[arg(long, value_name = "DIR", requires = "with")]
     pub templates: Option<PathBuf>,
-    /// The picture, .png or .exr (with depth, normals, places, mattes, path cost and level); {scene}, {seed} and what
-    /// is swept stand for their values
+    /// The picture, .png or .exr (with depth, normals, places, mattes, path cost and level), or - for PNG on standard
+    /// output; {scene}, {seed} and what is swept stand for their values
     #[arg(long, short, value_name = "FILE")]
-    pub output: Option<String>,
+    pub output: Option<PathBuf>,
     /// Make one labelled contact sheet of all pictures; without -o it is all that is written
     #[arg(long, value_name = "FILE")]
     pub sheet: Option<PathBuf>,
@@ -137,9 +156,10 @@ pub struct ExportArgs {
     /// What to write
     #[arg(long, value_enum)]
     pub to: Format,
-    /// The folder to write to; {scene}, {seed} and what is swept stand for their values
+    /// The folder to write to, or - for standard output (svg, obj, ply); {scene}, {seed} and what is swept stand for
+    /// their values
     #[arg(long, short, value_name = "FOLDER", default_value = ".")]
-    pub output: String,
+    pub output: PathBuf,
     /// Name of the files and prefix of the names declared in them, in place of the scene's; patterns as in -o
     #[arg(long, value_name = "PREFIX")]
     pub name: Option<String>,
@@ -182,7 +202,7 @@ pub struct StrikeArgs {
     pub origin: PlateOrigin,
     /// The scene that strikes: one with a [view] and a step `bolt` with endpoints `target`, as storm and night-bolt are
     #[arg(long, value_name = "SCENE", default_value = "storm")]
-    pub scene: String,
+    pub scene: PathBuf,
     /// Change a value of the scene, as in object.bolt.glow.halo.strength=0.3
     #[arg(long, value_name = "PATH=VALUE", value_parser = parse_override)]
     pub set: Vec<Override>,
@@ -217,10 +237,10 @@ pub struct StrikeArgs {
     /// Strength of the light by frame, times the scene's own: a line `frame,value` each
     #[arg(long, value_name = "FILE", requires = "frames")]
     pub intensity: Option<PathBuf>,
-    /// The picture: .png as the photograph has it, .exr with passes that add up; several for several formats; {seed} and
-    /// #### stand for the seed and the frame
+    /// The picture: .png as the photograph has it, .exr with passes that add up, or - for PNG on standard output; several
+    /// for several formats; {seed} and #### stand for the seed and the frame
     #[arg(long, short, value_name = "FILE")]
-    pub output: Vec<String>,
+    pub output: Vec<PathBuf>,
     /// A file a pass, in place of one with all of them (.exr)
     #[arg(long)]
     pub split: bool,
@@ -230,9 +250,8 @@ pub struct StrikeArgs {
     /// Make one labelled contact sheet of all candidates
     #[arg(long, value_name = "FILE")]
     pub sheet: Option<PathBuf>,
-    /// Most memory to take: bytes, or as 500M, 8G
-    #[arg(long, value_name = "BYTES", value_parser = parse_bytes)]
-    pub max_memory: Option<u64>,
+    #[command(flatten)]
+    pub limits: LimitArgs,
 }
 
 /// A corner of a picture.
@@ -281,6 +300,9 @@ pub struct CompareArgs {
     /// Write the differences as pictures to this folder
     #[arg(long, value_name = "DIR")]
     pub diff: Option<PathBuf>,
+    /// Most memory to take: bytes, or as 500M, 8G; by default as for scenes
+    #[arg(long, value_name = "BYTES", value_parser = parse_bytes)]
+    pub max_memory: Option<u64>,
     /// Accept different and new pictures as expected
     #[arg(long)]
     pub update: bool,

@@ -12,8 +12,10 @@ use super::args::CompareArgs;
 use super::console::Console;
 use super::error::Failure;
 use super::guard::refuse_inputs;
-use crate::compare::{Metric, Outcome, Pair, Panel, changes, html, junit, measure, summary};
-use crate::files::{Rgba, decode_exr, decode_linear, encode_png, write_bytes};
+use super::preview::{is_exr, is_png};
+use super::{memory, output, shown};
+use crate::compare::{Metric, Outcome, Pair, Panel, bytes_needed, changes, html, junit, measure, summary};
+use crate::files::{Rgba, decode_exr, decode_linear, encode_png, picture_extent, write_bytes};
 use crate::math::srgb_byte;
 use crate::raster::{Layers, filmic};
 
@@ -41,9 +43,23 @@ struct FileConfig {
 
 /// A pair of files, with the name that both have.
 struct Files {
-    name: String,
+    name: PathBuf,
     expected: PathBuf,
     actual: PathBuf,
+}
+
+impl Files {
+    /// The name in reports and in `compare.toml`.
+    fn shown(&self) -> String {
+        shown::path(&self.name).replace('\\', "/")
+    }
+
+    /// Bytes that comparing them takes; 0 where a file is missing or cannot be read.
+    fn bytes_needed(&self) -> u64 {
+        let [expected, actual] = [&self.expected, &self.actual].map(|path| picture_extent(path, is_exr(path)));
+        let (Some(e), Some(a)) = (expected, actual) else { return 0 };
+        bytes_needed([e.pixels, a.pixels], [e.channels, a.channels])
+    }
 }
 
 pub fn run(args: &CompareArgs, console: &Console) -> Result<(), Failure> {
@@ -53,30 +69,34 @@ pub fn run(args: &CompareArgs, console: &Console) -> Result<(), Failure> {
     let config = read_config(args)?;
     let files = find(args)?;
     if files.is_empty() {
-        return Err(Failure::Usage(format!("{} has no pictures (.png, .exr)", args.expected.display())));
+        return Err(Failure::Usage(format!("{} has no pictures (.png, .exr)", shown::path(&args.expected))));
     }
     guard_inputs(args, &files)?;
     let wants_panels = args.html.is_some();
-    let results: Vec<(Pair, Panel, Option<Rgba>)> =
-        files.par_iter().map(|files| compare(args, &config, files, wants_panels)).collect();
-    let pairs: Vec<Pair> = results.iter().map(|(pair, ..)| pair.clone()).collect();
+    let max_memory = args.max_memory.unwrap_or_else(memory::default_limit);
+    let compare_one = |files: &Files| -> Result<(Pair, Panel), Failure> {
+        if console.is_stopped() {
+            return Err(Failure::Stopped);
+        }
+        let (pair, panel, difference) = compare(args, &config, files, wants_panels, max_memory);
+        if let (Some(folder), Some(picture)) = (&args.diff, difference) {
+            output::write(&difference_path(folder, &files.name), |out| out.write_all(&png(&picture)))?;
+        }
+        Ok((pair, panel))
+    };
+    let mut panels: Vec<(Pair, Panel)> = Vec::new();
+    for batch in batches(&files, max_memory) {
+        panels.extend(batch.par_iter().map(compare_one).collect::<Result<Vec<_>, _>>()?);
+    }
+    let pairs: Vec<Pair> = panels.iter().map(|(pair, _)| pair.clone()).collect();
     for (pair, files) in pairs.iter().zip(&files) {
         say(pair, files, console);
     }
-    if let Some(folder) = &args.diff {
-        for (pair, _, difference) in &results {
-            if let Some(picture) = difference.as_ref().filter(|_| !pair.is_same()) {
-                let path = difference_path(folder, &pair.name);
-                write_bytes(&path, &png(picture)).map_err(|e| Failure::file("write", &path, &e))?;
-            }
-        }
-    }
     if let Some(path) = &args.junit {
-        write_bytes(path, junit(&pairs).as_bytes()).map_err(|e| Failure::file("write", path, &e))?;
+        output::write(path, |out| out.write_all(junit(&pairs).as_bytes()))?;
     }
     if let Some(path) = &args.html {
-        let panels: Vec<(Pair, Panel)> = results.into_iter().map(|(pair, panel, _)| (pair, panel)).collect();
-        write_bytes(path, html(&panels).as_bytes()).map_err(|e| Failure::file("write", path, &e))?;
+        output::write(path, |out| out.write_all(html(&panels).as_bytes()))?;
     }
     write_step_summary(&pairs)?;
     if !console.json {
@@ -103,12 +123,31 @@ fn guard_inputs(args: &CompareArgs, files: &[Files]) -> Result<(), Failure> {
     if let Some(folder) = &args.diff {
         outputs.extend(files.iter().map(|files| difference_path(folder, &files.name)));
     }
+    output::check(&outputs, true)?;
     refuse_inputs(inputs.map(PathBuf::as_path), &outputs)
 }
 
 /// Where the picture of a difference goes.
-fn difference_path(folder: &Path, name: &str) -> PathBuf {
-    folder.join(format!("{name}.flip.png"))
+fn difference_path(folder: &Path, name: &Path) -> PathBuf {
+    let mut path = folder.join(name).into_os_string();
+    path.push(".flip.png");
+    path.into()
+}
+
+/// Runs of `files` that can be compared side by side within `max_memory` bytes.
+fn batches(files: &[Files], max_memory: u64) -> Vec<&[Files]> {
+    let needed: Vec<u64> = files.iter().map(Files::bytes_needed).collect();
+    let mut batches = Vec::new();
+    let (mut start, mut sum) = (0, 0_u64);
+    for (i, &needed) in needed.iter().enumerate() {
+        sum = sum.saturating_add(needed);
+        if sum > max_memory && i > start {
+            batches.push(&files[start..i]);
+            (start, sum) = (i, needed);
+        }
+    }
+    batches.push(&files[start..]);
+    batches
 }
 
 fn config_path(args: &CompareArgs) -> PathBuf {
@@ -120,10 +159,10 @@ fn read_config(args: &CompareArgs) -> Result<Config, Failure> {
     match fs::read_to_string(&path) {
         Ok(text) => {
             let config: Config =
-                toml::from_str(&text).map_err(|e| Failure::Usage(format!("{}: {e}", path.display())))?;
+                toml::from_str(&text).map_err(|e| Failure::Usage(format!("{}: {e}", shown::path(&path))))?;
             let thresholds = config.file.values().map(|file| file.threshold).chain([config.threshold]);
             match thresholds.flatten().find(|x| x.is_nan() || *x < 0.0) {
-                Some(x) => Err(Failure::Usage(format!("{}: a threshold is 0 or more, not {x}", path.display()))),
+                Some(x) => Err(Failure::Usage(format!("{}: a threshold is 0 or more, not {x}", shown::path(&path)))),
                 None => Ok(config),
             }
         }
@@ -144,9 +183,13 @@ fn find(args: &CompareArgs) -> Result<Vec<Files>, Failure> {
         return Err(Failure::Usage("compare takes two pictures or two folders, not one of each".to_owned()));
     }
     if !expected.is_dir() && !actual.is_dir() {
-        let name = expected.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+        let name = expected.file_name().map_or_else(PathBuf::new, PathBuf::from);
         if !actual.exists() && !expected.exists() {
-            return Err(Failure::Usage(format!("there is neither {} nor {}", expected.display(), actual.display())));
+            return Err(Failure::Usage(format!(
+                "there is neither {} nor {}",
+                shown::path(expected),
+                shown::path(actual)
+            )));
         }
         return Ok(vec![Files { name, expected: expected.clone(), actual: actual.clone() }]);
     }
@@ -162,24 +205,30 @@ fn find(args: &CompareArgs) -> Result<Vec<Files>, Failure> {
         .collect())
 }
 
-/// The pictures below `folder`, by their paths within it, with `/`.
-fn list(folder: &Path, within: &Path, names: &mut BTreeSet<String>) -> std::io::Result<()> {
+/// The pictures below `folder`, by their paths within it.
+fn list(folder: &Path, within: &Path, names: &mut BTreeSet<PathBuf>) -> std::io::Result<()> {
     for entry in fs::read_dir(folder.join(within))? {
         let entry = entry?;
         let path = within.join(entry.file_name());
         if entry.file_type()?.is_dir() {
             list(folder, &path, names)?;
-        } else if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png") || e.eq_ignore_ascii_case("exr")) {
-            names.insert(path.to_string_lossy().replace('\\', "/"));
+        } else if is_png(&path) || is_exr(&path) {
+            names.insert(path);
         }
     }
     Ok(())
 }
 
 /// Compares a pair; the difference in colours where there is one.
-fn compare(args: &CompareArgs, config: &Config, files: &Files, wants_panel: bool) -> (Pair, Panel, Option<Rgba>) {
+fn compare(
+    args: &CompareArgs,
+    config: &Config,
+    files: &Files,
+    wants_panel: bool,
+    max_memory: u64,
+) -> (Pair, Panel, Option<Rgba>) {
     // The most specific level that says anything of a metric decides; a threshold goes with its own level's metric.
-    let own = config.file.get(&files.name).copied().unwrap_or_default();
+    let own = config.file.get(&files.shown()).copied().unwrap_or_default();
     let levels = [
         (args.metric.map(Metric::from), args.threshold),
         (own.metric, own.threshold),
@@ -190,7 +239,7 @@ fn compare(args: &CompareArgs, config: &Config, files: &Files, wants_panel: bool
     let threshold =
         levels[..=with_metric].iter().find_map(|(_, threshold)| *threshold).unwrap_or_else(|| metric.threshold());
     let mut pair = Pair {
-        name: files.name.clone(),
+        name: files.shown(),
         outcome: Outcome::Same,
         reason: None,
         measures: None,
@@ -199,6 +248,13 @@ fn compare(args: &CompareArgs, config: &Config, files: &Files, wants_panel: bool
         changes: Vec::new(),
     };
     let mut panel = Panel::default();
+    let needed = files.bytes_needed();
+    if needed > max_memory {
+        let [needed, most] = [needed.div_ceil(1_000_000), max_memory / 1_000_000];
+        let reason = format!("comparing them needs about {needed} MB of memory, more than the {most} MB allowed");
+        (pair.outcome, pair.reason) = (Outcome::Failed, Some(reason));
+        return (pair, panel, None);
+    }
     let [expected, actual] = [&files.expected, &files.actual].map(|path| read(path));
     if wants_panel {
         let shown = |picture: &Option<Result<(Layers, bool), String>>| match picture {
@@ -260,15 +316,15 @@ fn read(path: &Path) -> Option<Result<(Layers, bool), String>> {
     let bytes = match fs::read(path) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return None,
-        Err(error) => return Some(Err(format!("cannot read {}: {error}", path.display()))),
+        Err(error) => return Some(Err(format!("cannot read {}: {error}", shown::path(path)))),
     };
-    let is_exr = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"));
+    let is_exr = is_exr(path);
     let layers = if is_exr {
         decode_exr(&bytes).map_err(|e| e.to_string())
     } else {
         decode_linear(&bytes).map_err(|e| e.to_string())
     };
-    Some(layers.map(|layers| (layers, is_exr)).map_err(|error| format!("cannot read {}: {error}", path.display())))
+    Some(layers.map(|layers| (layers, is_exr)).map_err(|error| format!("cannot read {}: {error}", shown::path(path))))
 }
 
 /// The colours of a picture as a screen shows them, over black.
@@ -304,9 +360,7 @@ fn say(pair: &Pair, files: &Files, console: &Console) {
         console.line(&pair.line());
     }
     if !pair.is_same() && runs_on_github() {
-        // Percent and line ends have to be escaped there.
-        let text = pair.line().replace('%', "%25").replace('\n', "%0A");
-        let annotation = format!("::error file={}::{text}", files.expected.display());
+        let annotation = shown::annotation(&files.expected, &pair.line());
         // Not among lines of JSON; GitHub reads both streams.
         if console.json { console.note(&annotation) } else { console.line(&annotation) }
     }
@@ -323,8 +377,8 @@ fn write_step_summary(pairs: &[Pair]) -> Result<(), Failure> {
     };
     let mut text = format!("{}\n\n| picture | outcome | |\n| --- | --- | --- |\n", summary(pairs));
     for pair in pairs.iter().filter(|pair| !pair.is_same()) {
-        let told = pair.told().replace('|', "\\|");
-        text.push_str(&format!("| `{}` | {} | {told} |\n", pair.name, pair.outcome.name()));
+        let [name, told] = [&pair.name, &pair.told()].map(|text| shown::cell(text));
+        text.push_str(&format!("| {name} | {} | {told} |\n", pair.outcome.name()));
     }
     fs::OpenOptions::new()
         .create(true)
@@ -346,7 +400,7 @@ fn update(pairs: &[Pair], files: &[Files], console: &Console) -> Result<(), Fail
             Outcome::Different | Outcome::New => {
                 let bytes = fs::read(&files.actual).map_err(|e| Failure::file("read", &files.actual, &e))?;
                 write_bytes(&files.expected, &bytes).map_err(|e| Failure::file("write", &files.expected, &e))?;
-                console.note(&format!("accepted {}", files.expected.display()));
+                console.note(&format!("accepted {}", shown::path(&files.expected)));
             }
             Outcome::Missing | Outcome::Failed => refused += 1,
             Outcome::Same => {}

@@ -1,11 +1,11 @@
 //! What the command says: results on stdout, everything else on stderr.
 
 use std::io::{self, IsTerminal, Write, stderr, stdout};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
-#[cfg(unix)]
-use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
-#[cfg(unix)]
+use std::thread;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -13,7 +13,7 @@ use signal_hook::consts::SIGINT;
 #[cfg(unix)]
 use signal_hook::consts::{SIGHUP, SIGQUIT, SIGTERM};
 
-#[cfg(unix)]
+use super::shown;
 use crate::files::exit;
 use crate::math::Progress;
 
@@ -22,32 +22,36 @@ use crate::math::Progress;
 const ENDING: [i32; 4] = [SIGINT, SIGTERM, SIGHUP, SIGQUIT];
 
 /// Work that does not look whether to stop has so long to end by itself.
-#[cfg(unix)]
 const PATIENCE: Duration = Duration::from_millis(600);
 
-/// The command's voice, and its ear for signals.
+/// The exit code where time is over, as `timeout` has it.
+const OUT_OF_TIME: i32 = 124;
+
+/// The command's voice, and its ear for what ends it early.
 pub struct Console {
     /// Results as JSON?
     pub json: bool,
     quiet: bool,
     bar: ProgressBar,
     stop: Arc<AtomicBool>,
-    signal: Arc<AtomicI32>,
+    /// The exit code, once `stop` is set.
+    code: Arc<AtomicI32>,
     lost: Mutex<Option<io::Error>>,
 }
 
 impl Console {
-    pub fn new(quiet: bool, json: bool) -> Self {
+    /// One that signals end, or, if `max_time` is given, its end.
+    pub fn new(quiet: bool, json: bool, max_time: Option<Duration>) -> Self {
         let stop = Arc::new(AtomicBool::new(false));
-        let signal = Arc::new(AtomicI32::new(SIGINT));
-        heed_signals(Arc::clone(&stop), Arc::clone(&signal));
+        let code = Arc::new(AtomicI32::new(128 + SIGINT));
+        heed(Arc::clone(&stop), Arc::clone(&code), max_time);
         let shown = !quiet && !json && stderr().is_terminal();
         let target = if shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(Some(1000), target);
         if let Ok(style) = ProgressStyle::with_template("{prefix} {msg:8} {wide_bar} {percent:>3} % {eta:>4}") {
             bar.set_style(style);
         }
-        Self { json, quiet, bar, stop, signal, lost: Mutex::default() }
+        Self { json, quiet, bar, stop, code, lost: Mutex::default() }
     }
 
     /// The handle for long work on what `label` names; it shows a bar where stderr is a terminal.
@@ -77,14 +81,19 @@ impl Console {
         self.bar.finish_and_clear();
     }
 
-    /// Has a signal come?
+    /// Has a signal come, or the time run out?
     pub fn is_stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// The number of the signal that came, if one came.
-    pub fn signal(&self) -> u8 {
-        self.signal.load(Ordering::Relaxed) as u8
+    /// The exit code of what was stopped.
+    pub fn stopped_code(&self) -> u8 {
+        self.code.load(Ordering::Relaxed) as u8
+    }
+
+    /// Why it was stopped.
+    pub fn stopped_because(&self) -> &'static str {
+        because(self.code.load(Ordering::Relaxed))
     }
 
     /// Are colours and box drawing wanted?
@@ -94,12 +103,38 @@ impl Console {
 
     /// A result, on stdout: one line of JSON.
     pub fn result(&self, value: &serde_json::Value) {
-        self.line(&value.to_string());
+        let mut line = String::new();
+        // JSON lets some of them through, terminals obey them.
+        for c in value.to_string().chars() {
+            if c.is_control() { line.push_str(&format!("\\u{:04x}", u32::from(c))) } else { line.push(c) }
+        }
+        self.print(line.as_bytes());
     }
 
-    /// A result, on stdout. A closed pipe is no failure: whoever reads has enough.
+    /// A result, on stdout.
     pub fn line(&self, text: &str) {
-        if let Err(error) = writeln!(stdout(), "{text}")
+        self.print(shown::lines(text).as_bytes());
+    }
+
+    /// The result is that `path` was written: its name on stdout, or JSON of it and the fields of `details`.
+    pub fn wrote(&self, path: &Path, details: serde_json::Value) {
+        if self.json {
+            let mut all = serde_json::json!({ "file": path.to_string_lossy() });
+            if let (Some(all), serde_json::Value::Object(details)) = (all.as_object_mut(), details) {
+                all.extend(details);
+            }
+            self.result(&all);
+        } else if stdout().is_terminal() {
+            self.print(shown::path(path).as_bytes());
+        } else {
+            // As it is, for the next program.
+            self.print(path.as_os_str().as_encoded_bytes());
+        }
+    }
+
+    /// A line on stdout. A closed pipe is no failure: whoever reads has enough.
+    fn print(&self, text: &[u8]) {
+        if let Err(error) = stdout().write_all(&[text, b"\n"].concat())
             && error.kind() != io::ErrorKind::BrokenPipe
         {
             self.lost.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
@@ -115,45 +150,75 @@ impl Console {
     pub fn note(&self, text: &str) {
         if !self.quiet {
             self.bar.suspend(|| {
-                let _ = writeln!(stderr(), "{text}");
+                let _ = writeln!(stderr(), "{}", shown::lines(text));
             });
         }
     }
 
     /// An error, on stderr.
     pub fn error(&self, text: &str) {
+        self.report(&shown::lines(text));
+    }
+
+    /// An error, on stderr, whose colours are our own and whose texts are [`shown`].
+    pub fn report(&self, text: &str) {
         self.bar.finish_and_clear();
         let _ = writeln!(stderr(), "{text}");
     }
 }
 
-/// On a signal sets `stop`, and `signal` to its number. Work that has not ended soon after, or by a second signal, ends with the
-/// process; nothing temporary is left.
-#[cfg(unix)]
-fn heed_signals(stop: Arc<AtomicBool>, signal: Arc<AtomicI32>) {
-    // What `nohup` starts goes on without its terminal.
-    let heeded = ENDING.into_iter().filter(|&number| number != SIGHUP || !is_ignored(number));
-    // Neither fails for signals that may be caught; without a thread the system's own handling stays.
-    let Ok(mut signals) = signal_hook::iterator::Signals::new(heeded) else { return };
-    let (send, come) = channel();
-    let relay = move || signals.forever().try_for_each(|number| send.send(number));
-    let heed = move || {
-        let Ok(number) = come.recv() else { return };
-        signal.store(number, Ordering::Relaxed);
-        stop.store(true, Ordering::Relaxed);
-        if come.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Disconnected) {
-            let _ = writeln!(stderr(), "interrupted");
-            exit(128 + number);
-        }
-    };
-    let _ = std::thread::Builder::new().spawn(relay);
-    let _ = std::thread::Builder::new().spawn(heed);
+fn because(code: i32) -> &'static str {
+    if code == OUT_OF_TIME { "the time of --max-seconds is over" } else { "interrupted" }
 }
 
+/// On a signal, or after `max_time`, sets `stop`, and `code` to the exit code. Work that has not ended soon after, or by a second
+/// signal, ends with the process; nothing temporary is left.
+fn heed(stop: Arc<AtomicBool>, code: Arc<AtomicI32>, max_time: Option<Duration>) {
+    let (send, come) = channel();
+    // Without a thread the system's own handling stays.
+    let _ = thread::Builder::new().spawn(move || relay_signals(&send));
+    let heed = move || {
+        let first = match max_time {
+            None => come.recv().map_err(|_| RecvTimeoutError::Disconnected),
+            Some(time) => come.recv_timeout(time),
+        };
+        let ended = match first {
+            Ok(signal) => 128 + signal,
+            Err(RecvTimeoutError::Timeout) => OUT_OF_TIME,
+            Err(RecvTimeoutError::Disconnected) => return,
+        };
+        code.store(ended, Ordering::Relaxed);
+        stop.store(true, Ordering::Relaxed);
+        if come.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Disconnected) {
+            let _ = writeln!(stderr(), "{}", because(ended));
+            exit(ended);
+        }
+    };
+    let _ = thread::Builder::new().spawn(heed);
+}
+
+/// Sends the numbers of signals that ask us to end, for ever.
+#[cfg(unix)]
+fn relay_signals(come: &Sender<i32>) {
+    // What `nohup` starts goes on without its terminal.
+    let heeded = ENDING.into_iter().filter(|&number| number != SIGHUP || !is_ignored(number));
+    // This does not fail for signals that may be caught.
+    if let Ok(mut signals) = signal_hook::iterator::Signals::new(heeded) {
+        let _ = signals.forever().try_for_each(|number| come.send(number));
+    }
+}
+
+/// Looks for an interrupt, for ever.
 #[cfg(not(unix))]
-fn heed_signals(stop: Arc<AtomicBool>, _signal: Arc<AtomicI32>) {
-    let _ = signal_hook::flag::register_conditional_shutdown(SIGINT, 128 + SIGINT, Arc::clone(&stop));
-    let _ = signal_hook::flag::register(SIGINT, stop);
+fn relay_signals(come: &Sender<i32>) {
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let _ = signal_hook::flag::register(SIGINT, Arc::clone(&interrupted));
+    loop {
+        thread::sleep(Duration::from_millis(50));
+        if interrupted.swap(false, Ordering::Relaxed) && come.send(SIGINT).is_err() {
+            return;
+        }
+    }
 }
 
 /// Were we started not to heed the signal?

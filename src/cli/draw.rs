@@ -8,10 +8,11 @@ use super::args::{Look, RenderArgs, Renderer};
 use super::console::Console;
 use super::error::Failure;
 use super::jobs::{Job, Jobs};
+use super::output;
 use super::preview::{Drawn, samples, shine, trace, view};
 use super::write::{note_patterns, read_templates, write_pov, write_rib};
 use crate::export::{Origin, Pov, Rib, RibOptions, RibShadows, SvgOptions, Templates, write_svg};
-use crate::files::{Rgba, Temporary, decode_png, draw_svg};
+use crate::files::{Rgba, Scratch, decode_png, draw_svg};
 use crate::geom::MarkKind;
 use crate::math::Progress;
 use crate::model::Model;
@@ -19,17 +20,13 @@ use crate::render::{Povray, RibRenderer};
 use crate::scene::Loaded;
 
 pub fn report(path: &Path, job: &Job, scene: &Loaded, begun: Instant, console: &Console) {
-    if console.json {
-        console.result(&serde_json::json!({
-            "file": path,
-            "scene": job.name(),
-            "seed": scene.recipe.seed,
-            "size": scene.recipe.size,
-            "seconds": begun.elapsed().as_secs_f64(),
-        }));
-    } else {
-        console.line(&path.display().to_string());
-    }
+    let details = serde_json::json!({
+        "scene": job.name(),
+        "seed": scene.recipe.seed,
+        "size": scene.recipe.size,
+        "seconds": begun.elapsed().as_secs_f64(),
+    });
+    output::tell(path, details, console);
 }
 
 /// Options that say how rays are traced mean nothing where light is drawn.
@@ -73,8 +70,8 @@ pub fn draw(
     let model = jobs.model(scene, &[], console, progress)?;
     let Some(with) = args.with else { return trace(&model, &view, progress) };
     let templates = read_templates(args.templates.as_deref())?;
-    let folder = Temporary::folder(|| tempfile::Builder::new().prefix("lichtenberg-").tempdir())
-        .map_err(|e| Failure::Usage(format!("cannot make a folder for the renderer's files: {e}")))?;
+    let folder =
+        Scratch::new().map_err(|e| Failure::Usage(format!("cannot make a folder for the renderer's files: {e}")))?;
     let size = scene.recipe.size;
     let origin = job.origin(scene.recipe.seed, "render");
     let renderer = match with {

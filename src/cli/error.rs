@@ -4,11 +4,9 @@ use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnost
 
 use super::console::Console;
 use super::excerpt::Excerpt;
+use super::shown;
 use crate::render::{PovrayError, RibError};
 use crate::scene::{SceneError, Stage};
-
-/// Mistakes that are told of a scene: those after them are counted.
-const MOST_MISTAKES: usize = 20;
 
 /// Why the command did not do what was asked.
 #[derive(Debug)]
@@ -28,56 +26,52 @@ pub enum Failure {
 impl Failure {
     /// A usage error about a file.
     pub fn file(action: &str, path: &std::path::Path, error: &std::io::Error) -> Self {
-        Self::Usage(format!("cannot {action} {}: {error}", path.display()))
+        let hint = if error.kind() == std::io::ErrorKind::FileTooLarge { ", more than --max-bytes allows" } else { "" };
+        Self::Usage(format!("cannot {action} {}: {error}{hint}", shown::path(path)))
     }
 
-    /// 1 the answer is no, 2 bad usage or scene, 3 an outside program failed, 128 + signal interrupted.
+    /// 1 the answer is no, 2 bad usage or scene, 3 an outside program failed, 124 out of time, 128 + signal interrupted.
     pub fn code(&self, console: &Console) -> u8 {
         match self {
             Self::No(_) => 1,
             Self::Scene(_) | Self::Usage(_) => 2,
             Self::Outside(_) => 3,
-            Self::Stopped => 128 + console.signal(),
+            Self::Stopped => console.stopped_code(),
         }
     }
 
     /// Prints the error on stderr, and as JSON on stdout where that is wanted.
     pub fn print(&self, console: &Console) {
         if console.json {
-            console.result(&self.to_json());
+            console.result(&self.to_json(console));
         }
         match self {
-            Self::Stopped => console.error("interrupted"),
+            Self::Stopped => console.error(console.stopped_because()),
             Self::Usage(text) | Self::No(text) | Self::Outside(text) => console.error(&format!("error: {text}")),
             Self::Scene(error) => print_scene(error, console),
         }
     }
 
-    fn to_json(&self) -> serde_json::Value {
+    fn to_json(&self, console: &Console) -> serde_json::Value {
         let mistakes = match self {
             Self::Scene(error) => mistakes(error),
             Self::Usage(text) | Self::No(text) | Self::Outside(text) => {
                 vec![serde_json::json!({ "message": text })]
             }
-            Self::Stopped => vec![serde_json::json!({ "message": "interrupted" })],
+            Self::Stopped => vec![serde_json::json!({ "message": console.stopped_because() })],
         };
         match self {
-            Self::Scene(error) if more(error) > 0 => {
-                serde_json::json!({ "errors": mistakes, "more": more(error) })
+            Self::Scene(error) if error.told().1 > 0 => {
+                serde_json::json!({ "errors": mistakes, "more": error.told().1 })
             }
             _ => serde_json::json!({ "errors": mistakes }),
         }
     }
 }
 
-/// The number of mistakes that are not told.
-fn more(error: &SceneError) -> usize {
-    error.mistakes.len().saturating_sub(MOST_MISTAKES)
-}
-
 /// Mistakes as JSON: scene, file (the scene or what it includes), line, column, place, message.
 fn mistakes(error: &SceneError) -> Vec<serde_json::Value> {
-    let mistakes = error.mistakes.iter().take(MOST_MISTAKES).map(|mistake| {
+    let mistakes = error.told().0.iter().map(|mistake| {
         let at = error.line_column(mistake);
         serde_json::json!({
             "scene": error.name,
@@ -95,10 +89,13 @@ fn mistakes(error: &SceneError) -> Vec<serde_json::Value> {
 fn print_scene(error: &SceneError, console: &Console) {
     let theme = if console.is_fancy() { GraphicalTheme::unicode() } else { GraphicalTheme::none() };
     let handler = GraphicalReportHandler::new_themed(theme);
-    for mistake in error.mistakes.iter().take(MOST_MISTAKES) {
+    let (told, more) = error.told();
+    for mistake in told {
         let place = if mistake.place.is_empty() { String::new() } else { format!("{}: ", mistake.place) };
-        let mut diagnostic = MietteDiagnostic::new(format!("{place}{}", mistake.message));
+        let message = format!("{place}{}", mistake.message);
+        let mut diagnostic = MietteDiagnostic::new(shown::lines(&message));
         let (name, source) = error.file(mistake);
+        let name = &shown::line(name);
         let report = match &mistake.span {
             Some(span) => {
                 let excerpt = Excerpt::new(name, source, &span.range);
@@ -106,18 +103,18 @@ fn print_scene(error: &SceneError, console: &Console) {
                 Report::new(diagnostic).with_source_code(excerpt)
             }
             None => {
-                diagnostic.message = format!("{}: {}", error.name, diagnostic.message);
+                diagnostic.message = format!("{name}: {}", diagnostic.message);
                 Report::new(diagnostic)
             }
         };
         let mut text = String::new();
         if handler.render_report(&mut text, report.as_ref()).is_err() {
-            text = format!("{name}: {place}{}", mistake.message);
+            text = format!("{name}: {}", shown::lines(&message));
         }
-        console.error(text.trim_end());
+        console.report(text.trim_end());
     }
-    if more(error) > 0 {
-        console.error(&format!("... and {} more", more(error)));
+    if more > 0 {
+        console.error(&format!("... and {more} more"));
     }
 }
 

@@ -3,6 +3,7 @@
 
 use std::ops::Range;
 
+use super::shown::lines;
 use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
 /// Characters of a line that are shown, where it is longer.
@@ -46,7 +47,7 @@ impl Excerpt {
         let place = |at: usize| (text[..at].matches('\n').count(), text[line_start(at)..at].chars().count());
         let places = [place(shown.start), place(start)];
         let mistake = start..end.min(shown.end).max(start);
-        Self { name: name.to_owned(), data: text[shown.clone()].to_owned(), shown, mistake, places }
+        Self { name: name.to_owned(), data: lines(&text[shown.clone()]).into_owned(), shown, mistake, places }
     }
 }
 

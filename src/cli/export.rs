@@ -1,27 +1,33 @@
 //! `export`: scenes for other programs.
 
+use std::ffi::OsStr;
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
+use std::slice;
 
 use super::args::{ExportArgs, Format, Shadows};
 use super::console::Console;
 use super::error::Failure;
 use super::jobs::{Job, Jobs};
+use super::output::{self, is_stdout};
 use super::render::check_name;
+use super::shown;
 use super::write::{Written, note_patterns, read_templates, write_pov, write_rib};
 use crate::export::{Pov, Rib, RibOptions, RibShadows, SvgOptions, Templates, write_obj, write_ply, write_svg};
-use crate::files::write_atomic;
 use crate::geom::MarkKind;
 use crate::model::{Model, Object};
 use crate::scene::Loaded;
 
 pub fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
     let jobs = Jobs::new(&args.scene, console)?;
-    let names = jobs.outputs(args.name.as_ref().unwrap_or(&jobs.pattern))?;
-    let folder_pattern = format!("{}/{}", args.output, args.name.as_ref().unwrap_or(&jobs.pattern));
-    let paths = jobs.outputs(&folder_pattern)?;
+    let pattern = args.name.as_ref().unwrap_or(&jobs.pattern);
+    let names = jobs.outputs(OsStr::new(pattern))?;
+    let names: Vec<String> = names.iter().map(|name| name.to_string_lossy().into_owned()).collect();
     for name in &names {
         check_name(name)?;
     }
+    let paths = jobs.outputs(args.output.join(pattern).as_os_str())?;
     let given = [("--shadows", args.shadows.is_some()), ("--displace", args.displace), ("--gzip", args.gzip)];
     if let Some((option, _)) = given.iter().find(|(_, is_given)| *is_given && args.to != Format::Rib) {
         return Err(Failure::Usage(format!("{option} is for RIB: use it with --to rib")));
@@ -30,35 +36,29 @@ pub fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
     for name in args.templates.iter().flat_map(|folder| Templates::names().map(|name| folder.join(name))) {
         jobs.add_input(&name);
     }
-    let folder_of = |path: &str| Path::new(path).parent().unwrap_or(Path::new(".")).to_owned();
+    let folder_of = |path: &Path| path.parent().unwrap_or(Path::new(".")).to_owned();
     let files = names.iter().zip(&paths).flat_map(|(name, path)| {
         let folder = folder_of(path);
         args.to.files(name).into_iter().map(move |file| folder.join(file))
     });
+    if is_stdout(&args.output) {
+        return write_to_stdout(args, &jobs, console);
+    }
     jobs.guard(&files.collect::<Vec<_>>())?;
     for ((job, name), path) in jobs.list.iter().zip(&names).zip(&paths) {
         let folder = &folder_of(path);
         let first = folder.join(format!("{name}.{}", args.to.ending()));
-        if args.skip_existing && first.exists() {
+        if args.skip_existing && is_whole(&first) {
             continue;
         }
         let scene = jobs.load(job)?;
         let progress = console.progress(job.name());
-        let show: Vec<MarkKind> = match args.to {
-            Format::Svg if args.show.is_empty() => scene.show.clone(),
-            Format::Svg => args.show.iter().filter_map(|&s| s.mark()).collect(),
-            Format::Pov | Format::Rib | Format::Obj | Format::Ply => Vec::new(),
-        };
-        let model = jobs.model(&scene, &show, console, &progress)?;
+        let model = jobs.model(&scene, &marks(args, &scene), console, &progress)?;
         let target = Target { folder, name, first: &first };
         let written = write(args, &target, job, &scene, &model, &templates, console)?;
         console.done();
         for path in written {
-            if console.json {
-                console.result(&serde_json::json!({ "file": path, "scene": job.name(), "seed": scene.recipe.seed }));
-            } else {
-                console.line(&path.display().to_string());
-            }
+            console.wrote(&path, serde_json::json!({ "scene": job.name(), "seed": scene.recipe.seed }));
         }
     }
     Ok(())
@@ -72,6 +72,46 @@ struct Target<'a> {
     first: &'a Path,
 }
 
+/// Writes the one scene of `jobs` to standard output.
+fn write_to_stdout(args: &ExportArgs, jobs: &Jobs, console: &Console) -> Result<(), Failure> {
+    let ([job], Format::Svg | Format::Obj | Format::Ply) = (&jobs.list[..], args.to) else {
+        return Err(Failure::Usage("standard output (-) takes one scene as svg, obj or ply".to_owned()));
+    };
+    output::check(slice::from_ref(&args.output), console.json)?;
+    let scene = jobs.load(job)?;
+    let model = jobs.model(&scene, &marks(args, &scene), console, &console.progress(job.name()))?;
+    console.done();
+    write_one(args.to, &args.output, &scene, &model)
+}
+
+/// The marks that are drawn.
+fn marks(args: &ExportArgs, scene: &Loaded) -> Vec<MarkKind> {
+    match args.to {
+        Format::Svg if args.show.is_empty() => scene.show.clone(),
+        Format::Svg => args.show.iter().filter_map(|&s| s.mark()).collect(),
+        Format::Pov | Format::Rib | Format::Obj | Format::Ply => Vec::new(),
+    }
+}
+
+/// Is the text there, to its end? Others than we may have left half of it, or none.
+fn is_whole(path: &Path) -> bool {
+    let mut end = [0];
+    let read = File::open(path).and_then(|mut file| {
+        file.seek(SeekFrom::End(-1))?;
+        file.read_exact(&mut end)
+    });
+    read.is_ok() && end == *b"\n"
+}
+
+/// Writes `model` in a format of one file.
+fn write_one(to: Format, path: &Path, scene: &Loaded, model: &Model) -> Result<(), Failure> {
+    output::write(path, |out| match to {
+        Format::Obj => write_obj(model, out),
+        Format::Ply => write_ply(model, out),
+        Format::Svg | Format::Pov | Format::Rib => write_svg(model, SvgOptions { size: scene.recipe.size }, out),
+    })
+}
+
 /// Writes `model` in the format asked for; the files.
 fn write(
     args: &ExportArgs,
@@ -83,19 +123,8 @@ fn write(
     console: &Console,
 ) -> Result<Vec<PathBuf>, Failure> {
     match args.to {
-        Format::Svg => {
-            write_atomic(target.first, |out| write_svg(model, SvgOptions { size: scene.recipe.size }, out))
-                .map_err(|e| Failure::file("write", target.first, &e))?;
-            Ok(vec![target.first.to_owned()])
-        }
-        Format::Obj | Format::Ply => {
-            let wrong = |e: std::io::Error| match e.kind() {
-                std::io::ErrorKind::InvalidInput => Failure::Usage(format!("{}: {e}", job.name())),
-                _ => Failure::file("write", target.first, &e),
-            };
-            let obj = args.to == Format::Obj;
-            write_atomic(target.first, |out| if obj { write_obj(model, out) } else { write_ply(model, out) })
-                .map_err(wrong)?;
+        Format::Svg | Format::Obj | Format::Ply => {
+            write_one(args.to, target.first, scene, model)?;
             Ok(vec![target.first.to_owned()])
         }
         Format::Pov => {
@@ -125,7 +154,7 @@ fn leans(object: &Object) -> bool {
 /// The files written; tells of those that were left alone.
 fn told(written: Written, console: &Console) -> Vec<PathBuf> {
     for path in &written.kept {
-        console.note(&format!("note: kept {}, which was edited; --force writes over it", path.display()));
+        console.note(&format!("note: kept {}, which was edited; --force writes over it", shown::path(path)));
     }
     written.files
 }

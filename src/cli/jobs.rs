@@ -1,13 +1,16 @@
 //! Many at once: scenes, seeds and sweeps become jobs, each with its own output.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::OsStr;
+use std::iter;
 use std::path::{Path, PathBuf};
 
-use super::args::{SceneArgs, Seeds, Sweep};
+use super::args::{LimitArgs, SceneArgs, Seeds, Sweep};
 use super::console::Console;
 use super::error::Failure;
 use super::guard::refuse_inputs;
 use super::memory;
+use super::{pattern, shown};
 use crate::export::Origin;
 use crate::files::{FileRead, Folder, Reads, embedded_scenes};
 use crate::geom::MarkKind;
@@ -27,7 +30,7 @@ pub struct Job {
     source: Source,
     overrides: Vec<Override>,
     /// The scene's name as it was given, for headers.
-    given: String,
+    given: PathBuf,
     /// What patterns stand for: `scene`, `seed`, and each swept path, whole and its last key.
     values: BTreeMap<String, String>,
     /// The frame of an animation.
@@ -47,36 +50,48 @@ pub struct Jobs {
     reads: Reads,
 }
 
-/// The text of the scene called `name`: a file, or else an embedded one.
-pub fn find_scene(name: &str, console: &Console) -> Result<Source, Failure> {
+/// The text of the scene called `name`, a file, or else an embedded one; `reads` records what it reads.
+pub fn find_scene(name: &Path, limits: &LimitArgs, reads: &Reads, console: &Console) -> Result<Source, Failure> {
     let embedded = embedded_scenes();
-    let inside = embedded.iter().find(|(known, ..)| known == name);
-    let candidates = [PathBuf::from(name), PathBuf::from(format!("{name}.toml"))];
+    let inside = embedded.iter().find(|(known, ..)| Path::new(known) == name);
+    let mut with_ending = name.as_os_str().to_owned();
+    with_ending.push(".toml");
+    let candidates = [name.to_owned(), PathBuf::from(with_ending)];
     let file = candidates.iter().find(|path| path.is_file());
     if let Some(path) = file {
         if inside.is_some() {
-            console.note(&format!("note: taking the file {}, not the embedded scene `{name}`", path.display()));
+            console.note(&format!("note: taking the file {}, not the embedded scene of that name", shown::path(path)));
         }
-        return read_scene(path);
+        let source = read_scene(path, limits)?;
+        reads.add(FileRead { name: source.name.clone(), path: path.clone() });
+        return Ok(source.recorded(reads));
     }
     if let Some((name, text, folder)) = inside {
-        return Ok(Source { name: name.clone(), text: (*text).to_owned(), folder: folder.clone() });
+        let source = Source { name: name.clone(), text: (*text).to_owned(), folder: folder.clone() };
+        return Ok(source.recorded(reads));
     }
-    let hint = unknown("scene file or embedded scene", name, embedded.iter().map(|(name, ..)| name));
+    let hint = unknown("scene file or embedded scene", &shown::path(name), embedded.iter().map(|(name, ..)| name));
     Err(Failure::Usage(hint))
 }
 
-fn read_scene(path: &Path) -> Result<Source, Failure> {
+fn read_scene(path: &Path, limits: &LimitArgs) -> Result<Source, Failure> {
     let wrong = |error: &std::io::Error| Failure::file("read", path, error);
     let size = path.metadata().map_err(|e| wrong(&e))?.len();
     if size > MOST_BYTES {
-        return Err(Failure::Usage(format!("{} has {size} bytes: that is no scene", path.display())));
+        return Err(Failure::Usage(format!("{} has {size} bytes: that is no scene", shown::path(path))));
     }
     let text = std::fs::read(path).map_err(|e| wrong(&e))?;
     let text = String::from_utf8(text)
-        .map_err(|_| Failure::Usage(format!("{} is not UTF-8 text: that is no scene", path.display())))?;
+        .map_err(|_| Failure::Usage(format!("{} is not UTF-8 text: that is no scene", shown::path(path))))?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    Ok(Source { name: path.display().to_string(), text, folder: Folder::Disk(folder.to_owned()) })
+    let folder = if limits.confined {
+        let allowed = iter::once(folder).chain(limits.allow.iter().map(PathBuf::as_path));
+        let place = |path: &Path| path.canonicalize().map_err(|error| Failure::file("read", path, &error));
+        Folder::Confined(folder.to_owned(), allowed.map(place).collect::<Result<_, _>>()?)
+    } else {
+        Folder::Disk(folder.to_owned())
+    };
+    Ok(Source { name: shown::path(path), text, folder })
 }
 
 impl Jobs {
@@ -100,7 +115,7 @@ impl Jobs {
         let mut list = Vec::new();
         let reads = Reads::default();
         for given in &args.scenes {
-            let source = find_scene(given, console)?.recorded(&reads);
+            let source = find_scene(given, &args.limits, &reads, console)?;
             for (&seed, &frame) in seeds.iter().flat_map(|seed| frames.iter().map(move |frame| (seed, frame))) {
                 for choice in choices(&args.sweep) {
                     list.push(Job::new(args, &source, given, (seed, seeds.len() > 1), frame, &choice));
@@ -108,20 +123,23 @@ impl Jobs {
             }
         }
         let pattern = pattern(args, seeds.len() > 1);
-        let max_memory = args.max_memory.unwrap_or_else(memory::default_limit);
+        let max_memory = args.limits.max_memory.unwrap_or_else(memory::default_limit);
         Ok(Self { list, pattern, size: args.size, max_memory, reads })
     }
 
     /// The output of each job by `pattern`.
-    pub fn outputs(&self, pattern: &str) -> Result<Vec<String>, Failure> {
-        let outputs: Vec<String> =
+    pub fn outputs(&self, pattern: &OsStr) -> Result<Vec<PathBuf>, Failure> {
+        let outputs: Vec<PathBuf> =
             self.list.iter().map(|job| job.output(pattern)).collect::<Result<_, _>>().map_err(Failure::Usage)?;
         let mut seen = BTreeMap::new();
         for (output, job) in outputs.iter().zip(&self.list) {
             if let Some(other) = seen.insert(output, job) {
                 return Err(Failure::Usage(format!(
-                    "`{output}` would be written twice ({} and {}): put {} in its name",
-                    other.label, job.label, self.pattern
+                    "`{}` would be written twice ({} and {}): put {} in its name",
+                    shown::path(output),
+                    other.label,
+                    job.label,
+                    self.pattern
                 )));
             }
         }
@@ -137,7 +155,7 @@ impl Jobs {
 
     /// Notes that the call reads `path` besides its scenes.
     pub fn add_input(&self, path: &Path) {
-        self.reads.add(FileRead { name: path.display().to_string(), path: path.to_owned() });
+        self.reads.add(FileRead { name: shown::path(path), path: path.to_owned() });
     }
 
     /// Refuses `outputs` that a scene reads, before anything grows: every scene is read for what it names.
@@ -214,12 +232,12 @@ impl Job {
     fn new(
         args: &SceneArgs,
         source: &Source,
-        given: &str,
+        given: &Path,
         (seed, is_one_of_seeds): (Option<u64>, bool),
         frame: Option<u32>,
         choice: &[(&str, &str)],
     ) -> Self {
-        let stem = Path::new(given).file_stem().map_or("scene".into(), |s| s.to_string_lossy());
+        let stem = given.file_stem().map_or("scene".into(), |s| s.to_string_lossy());
         let mut overrides = args.set.clone();
         let mut values = BTreeMap::from([("scene".to_owned(), stem.to_string())]);
         let mut label = Vec::new();
@@ -249,11 +267,10 @@ impl Job {
     }
 
     /// Its output by `pattern`: `{key}` stands for a value, `####` for its frame with as many digits.
-    fn output(&self, pattern: &str) -> Result<String, String> {
-        let name = fill(pattern, &self.values)?;
-        let Some((frame, start)) = self.frame.zip(name.find('#')) else { return Ok(name) };
-        let len = name[start..].chars().take_while(|&c| c == '#').count();
-        Ok(format!("{}{frame:0len$}{}", &name[..start], &name[start + len..]))
+    fn output(&self, pattern: &OsStr) -> Result<PathBuf, String> {
+        let name = pattern::fill(pattern, &self.values)?;
+        let numbered = self.frame.and_then(|frame| pattern::number(&name, frame));
+        Ok(numbered.unwrap_or(name))
     }
 
     /// The scene's name in messages.
@@ -268,8 +285,9 @@ impl Job {
 
     /// The command that repeats what was made, without paths.
     pub fn origin(&self, seed: u64, verb: &str) -> Origin {
-        let scene = Path::new(&self.given).file_name().map_or("scene".into(), |n| n.to_string_lossy());
-        let scene = if self.source.name == self.given { self.given.as_str().into() } else { scene };
+        let scene = self.given.file_name().map_or("scene".into(), |n| n.to_string_lossy());
+        // Names of embedded scenes have folders.
+        let scene = self.given.to_str().filter(|given| self.source.name == *given).map_or(scene, Into::into);
         let sets = self.overrides.iter().filter(|o| o.path != "seed").map(|o| format!(" --set {}={}", o.path, o.value));
         Origin { command: format!("lichtenberg {verb} {scene} --seed {seed}{}", sets.collect::<String>()), seed }
     }
@@ -290,33 +308,9 @@ fn choices(sweeps: &[Sweep]) -> Vec<Vec<(&str, &str)>> {
     })
 }
 
-/// `pattern` with each `{key}` replaced.
-fn fill(pattern: &str, values: &BTreeMap<String, String>) -> Result<String, String> {
-    let mut out = String::new();
-    let mut rest = pattern;
-    while let Some((before, after)) = rest.split_once('{') {
-        let (key, tail) = after.split_once('}').ok_or_else(|| format!("`{pattern}` has a {{ without its }}"))?;
-        let value = values.get(key).ok_or_else(|| unknown("value for the pattern", key, values.keys()))?;
-        out.push_str(before);
-        // Values may be lists or text with separators; a name may not.
-        out.extend(value.chars().map(|c| if c.is_alphanumeric() || "._-+".contains(c) { c } else { '-' }));
-        rest = tail;
-    }
-    out.push_str(rest);
-    Ok(out)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn patterns_are_filled() {
-        let values = BTreeMap::from([("scene".to_owned(), "elm".to_owned()), ("a.b".to_owned(), "[1, 2]".to_owned())]);
-        assert_eq!(fill("out/{scene}_{a.b}.png", &values).unwrap(), "out/elm_-1--2-.png");
-        assert!(fill("{scen}", &values).unwrap_err().contains("did you mean `scene`"));
-        assert!(fill("{scene", &values).is_err());
-    }
 
     #[test]
     fn sweeps_multiply() {

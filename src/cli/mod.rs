@@ -14,12 +14,15 @@ mod jobs;
 mod list;
 mod memory;
 mod new;
+mod output;
+mod pattern;
 mod place;
 mod preview;
 mod render;
 mod schema;
 mod sheet;
 mod shell;
+mod shown;
 mod strike;
 mod terminal;
 mod watch;
@@ -28,6 +31,9 @@ mod write;
 use std::io::Write;
 use std::panic::UnwindSafe;
 use std::process::ExitCode;
+#[cfg(unix)]
+use std::sync::Arc;
+use std::time::Duration;
 
 use clap::Parser;
 
@@ -63,10 +69,12 @@ fn report_panic(panic: &std::panic::PanicHookInfo<'_>) {
 
 fn parse_and_run() -> ExitCode {
     let args = Args::parse();
-    let console = Console::new(args.quiet, args.json);
-    let result = run(args, &console).and_then(|()| match console.lost() {
-        None => Ok(()),
-        Some(error) => Err(Failure::Usage(format!("cannot write to standard output: {error}"))),
+    let console = Console::new(args.quiet, args.json, args.max_seconds.map(Duration::from_secs));
+    let result = args.max_bytes.map_or(Ok(()), limit_files).and_then(|()| run(args, &console)).and_then(|()| {
+        match console.lost() {
+            None => Ok(()),
+            Some(error) => Err(Failure::Usage(format!("cannot write to standard output: {error}"))),
+        }
     });
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -75,6 +83,23 @@ fn parse_and_run() -> ExitCode {
             ExitCode::from(failure.code(&console))
         }
     }
+}
+
+/// No file that we or our children write gets larger than this; what would fails.
+#[cfg(unix)]
+fn limit_files(max_bytes: u64) -> Result<(), Failure> {
+    use rustix::process::{Resource, Rlimit, setrlimit};
+    // The signal that comes too would end us where it is not heeded.
+    let heeded = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
+    let limit = Rlimit { current: Some(max_bytes), maximum: Some(max_bytes) };
+    heeded
+        .and_then(|_| Ok(setrlimit(Resource::Fsize, limit)?))
+        .map_err(|error| Failure::Usage(format!("--max-bytes cannot be had: {error}")))
+}
+
+#[cfg(not(unix))]
+fn limit_files(_max_bytes: u64) -> Result<(), Failure> {
+    Err(Failure::Usage("--max-bytes cannot be had on this system".to_owned()))
 }
 
 fn run(args: Args, console: &Console) -> Result<(), Failure> {

@@ -8,6 +8,7 @@ use super::args::NewArgs;
 use super::console::Console;
 use super::error::Failure;
 use super::render::check_name;
+use super::shown;
 use crate::files::{FileRead, Folder, Reads, embedded_scenes, write_bytes};
 use crate::math::unknown;
 use crate::scene::{Source, load};
@@ -32,7 +33,7 @@ pub fn run(args: &NewArgs, console: &Console) -> Result<(), Failure> {
     let reads = reads.files();
     let own = PathBuf::from(format!("{}.toml", args.name));
     if own.exists() {
-        return Err(Failure::Usage(format!("{} is there already", own.display())));
+        return Err(Failure::Usage(format!("{} is there already", shown::path(&own))));
     }
     let mut files = vec![(own, with_new_paths(text, &reads).into_bytes())];
     for FileRead { path, .. } in reads {
@@ -40,17 +41,13 @@ pub fn run(args: &NewArgs, console: &Console) -> Result<(), Failure> {
         match std::fs::read(&path) {
             // Scenes share assets.
             Ok(old) if old == bytes => {}
-            Ok(_) => return Err(Failure::Usage(format!("{} is there already, and another file", path.display()))),
+            Ok(_) => return Err(Failure::Usage(format!("{} is there already, and another file", shown::path(&path)))),
             Err(_) => files.push((path, bytes)),
         }
     }
     for (path, bytes) in files {
         write_bytes(&path, &bytes).map_err(|e| Failure::file("write", &path, &e))?;
-        if console.json {
-            console.result(&serde_json::json!({ "file": path }));
-        } else {
-            console.line(&path.display().to_string());
-        }
+        console.wrote(&path, serde_json::Value::Null);
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::error::Failure;
+use super::shown;
 
 /// A coordinate as it was typed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,7 +114,7 @@ impl<T: Copy> Table<T> {
                 continue;
             }
             let wrong =
-                |message: &str| Failure::Usage(format!("{}, line {}: {line:?}: {message}", path.display(), i + 1));
+                |message: &str| Failure::Usage(format!("{}, line {}: {line:?}: {message}", shown::path(path), i + 1));
             let (frame, rest) =
                 line.split_once(',').ok_or_else(|| wrong("a line is a frame, a comma, and its value"))?;
             let frame: f64 = frame.trim().parse().map_err(|_| wrong("a line begins with the number of a frame"))?;
@@ -126,7 +127,7 @@ impl<T: Copy> Table<T> {
             rows.push((frame, read(rest.trim()).map_err(|message| wrong(&message))?));
         }
         if rows.is_empty() {
-            return Err(Failure::Usage(format!("{} tells of no frame", path.display())));
+            return Err(Failure::Usage(format!("{} tells of no frame", shown::path(path))));
         }
         Ok(Self { rows })
     }

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use super::args::{Look, RenderArgs, Renderer};
 use super::error::Failure;
-use crate::files::{Rgba, encode_png, write_atomic};
+use super::output;
+use crate::files::{Rgba, encode_png};
 use crate::glow::{Pass, ShineError};
 use crate::math::Progress;
 use crate::model::{Model, Stroke};
@@ -101,17 +102,17 @@ pub fn write_shone(
         if split {
             return Err(Failure::Usage("--split writes OpenEXR: end the picture in .exr".to_owned()));
         }
-        write_atomic(path, |out| shone.write_png(depth, texts, out)).map_err(|e| Failure::file("write", path, &e))?;
+        output::write(path, |out| shone.write_png(depth, texts, out))?;
         return Ok(vec![path.to_owned()]);
     }
     if !split {
-        write_atomic(path, |out| shone.write_exr(texts, out)).map_err(|e| Failure::file("write", path, &e))?;
+        output::write(path, |out| shone.write_exr(texts, out))?;
         return Ok(vec![path.to_owned()]);
     }
     let mut files = Vec::new();
     for pass in shone.passes() {
         let file = pass_file(path, pass);
-        write_atomic(&file, |out| shone.write_pass(pass, texts, out)).map_err(|e| Failure::file("write", &file, &e))?;
+        output::write(&file, |out| shone.write_pass(pass, texts, out))?;
         files.push(file);
     }
     Ok(files)
@@ -151,7 +152,7 @@ impl Drawn {
         if let Self::Shone(shone) = self {
             return write_shone(shone, path, depth(&args.bits), false, &texts).map(drop);
         }
-        write_atomic(path, |out| match self {
+        output::write(path, |out| match self {
             Self::Traced(traced) if is_exr(path) => traced.write_exr(&texts, out),
             Self::Screen(_) if is_exr(path) => {
                 Err(io::Error::other("only the built-in preview writes OpenEXR: leave out --with, or end it in .png"))
@@ -159,13 +160,17 @@ impl Drawn {
             Self::Traced(traced) if args.bits == "16" => traced.write_png16(&texts, out),
             _ => encode_png(&self.to_screen(), &texts, out),
         })
-        .map_err(|e| Failure::file("write", path, &e))
     }
 }
 
 /// Does the name end in `.exr`?
 pub fn is_exr(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"))
+}
+
+/// Does the name end in `.png`?
+pub fn is_png(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"))
 }
 
 /// What shapes a picture besides its scene.

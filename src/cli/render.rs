@@ -10,8 +10,10 @@ use super::console::Console;
 use super::draw::{draw, report};
 use super::error::Failure;
 use super::jobs::Jobs;
-use super::preview::is_exr;
+use super::output::{self, is_stdout};
+use super::preview::{is_exr, is_png};
 use super::sheet::{Tile, write_sheet};
+use super::shown;
 use super::{terminal, watch};
 use crate::export::identifier;
 use crate::files::{Rgba, decode_exr, decode_png};
@@ -19,11 +21,11 @@ use crate::files::{Rgba, decode_exr, decode_png};
 pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Result<(), Failure> {
     let jobs = Jobs::new(&args.scene, console)?;
     let keep = args.output.is_some() || args.sheet.is_none();
-    let default = format!("{}.png", jobs.pattern);
-    let outputs = jobs.outputs(args.output.as_ref().unwrap_or(&default))?;
+    let default = PathBuf::from(format!("{}.png", jobs.pattern));
+    let outputs = jobs.outputs(args.output.as_ref().unwrap_or(&default).as_os_str())?;
     let traces = args.with.is_none() && !args.schematic;
     for output in &outputs {
-        require_picture(Path::new(output), traces)?;
+        require_picture(output, traces)?;
     }
     if let Some(sheet) = &args.sheet {
         require_picture(sheet, false)?;
@@ -34,25 +36,25 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
     if args.watch {
         return watch::run(args, threads, console);
     }
-    let written = outputs.iter().filter(|_| keep).map(PathBuf::from).chain(args.sheet.clone()).collect::<Vec<_>>();
+    let written: Vec<PathBuf> = outputs.iter().filter(|_| keep).chain(&args.sheet).cloned().collect();
+    output::check(&written, console.json || args.show.contains(&Show::Terminal))?;
     jobs.guard(&written)?;
     let mut tiles = Vec::new();
-    for (job, output) in jobs.list.iter().zip(&outputs) {
-        let path = PathBuf::from(output);
+    for (job, path) in jobs.list.iter().zip(&outputs) {
         let begun = Instant::now();
-        let screen = if keep && args.skip_existing && path.exists() {
+        let screen = if keep && args.skip_existing && is_whole(path) {
             // Only a sheet needs what is there already.
             if args.sheet.is_none() {
                 continue;
             }
-            read_screen(&path).map_err(|e| Failure::Usage(format!("cannot read {output}: {e}")))?
+            read_screen(path).map_err(|e| Failure::Usage(format!("cannot read {}: {e}", shown::path(path))))?
         } else {
             let scene = jobs.load(job)?;
             let progress = console.progress(job.title());
-            let drawn = draw(args, &jobs, job, &scene, is_exr(&path), threads, console, &progress)?;
+            let drawn = draw(args, &jobs, job, &scene, is_exr(path), threads, console, &progress)?;
             if keep {
-                drawn.write(&path, args, &scene)?;
-                report(&path, job, &scene, begun, console);
+                drawn.write(path, args, &scene)?;
+                report(path, job, &scene, begun, console);
             }
             if args.sheet.is_none() && !args.show.contains(&Show::Terminal) {
                 continue;
@@ -68,21 +70,32 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
     if let Some(sheet) = &args.sheet {
         write_sheet(sheet, &tiles)?;
         if console.json {
-            console.result(&serde_json::json!({ "sheet": sheet, "pictures": tiles.len() }));
+            console.result(&serde_json::json!({ "sheet": sheet.to_string_lossy(), "pictures": tiles.len() }));
         } else {
-            console.line(&sheet.display().to_string());
+            output::tell(sheet, serde_json::Value::Null, console);
         }
     }
     Ok(())
 }
 
 fn require_picture(path: &Path, traces: bool) -> Result<(), Failure> {
-    let is_png = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
-    if is_png || (traces && is_exr(path)) {
+    if is_png(path) || is_stdout(path) || (traces && is_exr(path)) {
         return Ok(());
     }
     let endings = if traces { ".png or .exr" } else { ".png" };
-    Err(Failure::Usage(format!("{} must end in {endings}: that is what can be written", path.display())))
+    Err(Failure::Usage(format!(
+        "{} must end in {endings}, after a name: that is what can be written",
+        shown::path(path)
+    )))
+}
+
+/// Is the picture there, to its end? Others than we may have left half of it.
+fn is_whole(path: &Path) -> bool {
+    if is_exr(path) {
+        return read_screen(path).is_ok();
+    }
+    // The last chunk of PNG, whose checksum is always the same (section 11.2.5).
+    fs::read(path).is_ok_and(|bytes| bytes.ends_with(b"\0\0\0\0IEND\xae\x42\x60\x82"))
 }
 
 /// A picture that is there already, as a screen shows it.

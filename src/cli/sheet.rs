@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::error::Failure;
-use crate::files::{Rgba, draw_svg, encode_png, resize, write_atomic};
+use super::{output, shown};
+use crate::files::{Rgba, draw_svg, encode_png, resize};
 
 /// A picture and what tells it from the others.
 pub struct Tile {
@@ -37,7 +38,7 @@ pub fn write_sheet(path: &Path, tiles: &[Tile]) -> Result<(), Failure> {
         sheet.paste(&label(&tile.label, width)?, x, y + height);
     }
     let texts = [("Software", concat!("lichtenberg ", env!("CARGO_PKG_VERSION")))];
-    write_atomic(path, |out| encode_png(&sheet, &texts, out)).map_err(|e| Failure::file("write", path, &e))
+    output::write(path, |out| encode_png(&sheet, &texts, out))
 }
 
 /// A line of text, centred and made to fit.
@@ -45,7 +46,7 @@ fn label(text: &str, width: u32) -> Result<Rgba, Failure> {
     let letters = text.chars().count().max(1) as f64;
     // A letter is about half as wide as high.
     let size = (f64::from(width) / letters * 1.9).min(15.0);
-    let text = text.replace('&', "&amp;").replace('<', "&lt;");
+    let text = shown::line(text).replace('&', "&amp;").replace('<', "&lt;");
     let svg = format!(
         r##"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{LABEL}"><text x="{}" y="17" font-family="Ubuntu" font-weight="300" font-size="{size:.1}" text-anchor="middle" fill="#222">{text}</text></svg>"##,
         width / 2

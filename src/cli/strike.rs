@@ -13,9 +13,11 @@ use super::error::Failure;
 use super::guard::refuse_inputs;
 use super::jobs::find_scene;
 use super::memory;
+use super::output::{self, is_stdout};
 use super::place::{Place, Table, parse_place};
-use super::preview::{depth, is_exr, pass_file, shine, write_shone};
+use super::preview::{depth, is_exr, is_png, pass_file, shine, write_shone};
 use super::sheet::{Tile, write_sheet};
+use super::{pattern, shown};
 use crate::files::{ACESCG, Folder, REC709, Reads, decode_grey, decode_plate, set_chromaticities};
 use crate::glow::Pass;
 use crate::grow::Placement;
@@ -37,7 +39,7 @@ struct Shot {
 
 pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
     let reads = Reads::default();
-    let source = find_scene(&args.scene, console)?.recorded(&reads);
+    let source = find_scene(&args.scene, &args.limits, &reads, console)?;
     let seeds: Vec<Option<u64>> = match (&args.seeds, args.seed) {
         (Some(Seeds(seeds)), _) => seeds.iter().map(|&seed| Some(seed)).collect(),
         (None, seed) => vec![seed],
@@ -55,7 +57,7 @@ pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
         console.note(&format!("note: it strikes at frame {struck_at}, outside {}-{}", frames.start(), frames.end()));
     }
 
-    guard_inputs(args, &source, &reads, &shots, &seeds)?;
+    guard_inputs(args, &source, &reads, &shots, &seeds, console.json)?;
 
     let mut tiles = Vec::new();
     for shot in &shots {
@@ -63,7 +65,8 @@ pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
         let matte = args.matte.as_ref().map(|path| read_matte(path, &plate)).transpose()?.map(Arc::new);
         for &seed in &seeds {
             let begun = Instant::now();
-            let what = args.track.as_ref().map_or("--to".to_owned(), |track| format!("a place in {}", track.display()));
+            let what =
+                args.track.as_ref().map_or("--to".to_owned(), |track| format!("a place in {}", shown::path(track)));
             let to = |place: &Place| place.resolve(plate.frame(), args.origin == PlateOrigin::BottomLeft, &what);
             let targets: Vec<[f64; 2]> = args.to.iter().map(to).collect::<Result<_, _>>()?;
             // Where the target is tracked the whole stroke goes with it, from where it is when it strikes.
@@ -93,7 +96,7 @@ pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
             (view.plate, view.matte) = (Some(Arc::clone(&plate)), matte.clone());
             let label = seed.map_or_else(|| source.name.clone(), |seed| format!("seed {seed}"));
             let progress = console.progress(&label);
-            let max_memory = args.max_memory.unwrap_or_else(memory::default_limit);
+            let max_memory = args.limits.max_memory.unwrap_or_else(memory::default_limit);
             let grown = scene::grow(&resolved, &[], max_memory, &progress)?;
             let mut strokes = scene::model(&resolved, &grown, resolved.recipe.size, &progress)?.strokes;
             let told = match (&intensity, shot.frame) {
@@ -116,7 +119,7 @@ pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
     console.done();
     if let Some(sheet) = &args.sheet {
         write_sheet(sheet, &tiles)?;
-        console.line(&sheet.display().to_string());
+        output::tell(sheet, serde_json::Value::Null, console);
     }
     Ok(())
 }
@@ -136,25 +139,24 @@ fn write(
     for output in &shot.outputs {
         let path = with_seed(output, scene.recipe.seed);
         for file in write_shone(shone, &path, depth(&args.bits), args.split, &texts)? {
-            if console.json {
-                console.result(&serde_json::json!({
-                    "file": file,
-                    "seed": seed.unwrap_or(scene.recipe.seed),
-                    "frame": shot.frame,
-                    "size": scene.recipe.size,
-                    "seconds": begun.elapsed().as_secs_f64(),
-                }));
-            } else {
-                console.line(&file.display().to_string());
-            }
+            let details = serde_json::json!({
+                "seed": seed.unwrap_or(scene.recipe.seed),
+                "frame": shot.frame,
+                "size": scene.recipe.size,
+                "seconds": begun.elapsed().as_secs_f64(),
+            });
+            output::tell(&file, details, console);
         }
     }
     Ok(())
 }
 
+/// What stands for the seed in names of outputs.
+const SEED: &str = "{seed}";
+
 /// `output` with the seed in its name.
 fn with_seed(output: &Path, seed: u64) -> PathBuf {
-    PathBuf::from(output.to_string_lossy().replace("{seed}", &seed.to_string()))
+    pattern::replace(output, SEED, &seed.to_string())
 }
 
 /// Refuses outputs that the call reads: photographs of any frame, mattes, tables, the scene and its files.
@@ -164,6 +166,7 @@ fn guard_inputs(
     reads: &Reads,
     shots: &[Shot],
     seeds: &[Option<u64>],
+    prints_json: bool,
 ) -> Result<(), Failure> {
     let own = scene::load_frame(source, &args.set, None)?.recipe.seed;
     let reads = reads.files();
@@ -177,59 +180,50 @@ fn guard_inputs(
         }
         outputs.push(path);
     }
+    output::check(&outputs, prints_json)?;
     refuse_inputs(inputs.map(PathBuf::as_path), &outputs)
 }
 
 /// What is read and what is written, all of it looked up before any of it is made.
 fn shots(args: &StrikeArgs, seeds: usize) -> Result<Vec<Shot>, Failure> {
-    for output in &args.output {
-        let path = Path::new(output);
-        let is_png = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
-        if !is_png && !is_exr(path) {
+    for path in &args.output {
+        let output = shown::path(path);
+        if !is_png(path) && !is_exr(path) && !is_stdout(path) {
             return Err(Failure::Usage(format!("{output} must end in .png or .exr: that is what can be written")));
         }
         if args.split && !is_exr(path) {
             return Err(Failure::Usage(format!("--split writes OpenEXR, not {output}: end it in .exr")));
         }
-        if seeds > 1 && !output.contains("{seed}") {
-            return Err(Failure::Usage(format!("{output} would be written {seeds} times: put {{seed}} in its name")));
+        if seeds > 1 && !pattern::contains(path, SEED) {
+            return Err(Failure::Usage(format!("{output} would be written {seeds} times: put {SEED} in its name")));
         }
     }
     if args.output.is_empty() && args.sheet.is_none() {
         return Err(Failure::Usage("say where the picture goes: -o FILE, or --sheet FILE".to_owned()));
     }
-    let plate = args.plate.to_string_lossy().into_owned();
     let Some(frames) = &args.frames else {
-        if hashes(&plate).is_some() && !args.plate.exists() {
+        if pattern::contains(&args.plate, "#") && !args.plate.exists() {
+            let plate = shown::path(&args.plate);
             return Err(Failure::Usage(format!("{plate} is a sequence: say which of it, as in --frames 1001-1012")));
         }
-        let outputs = args.output.iter().map(PathBuf::from).collect();
-        return Ok(vec![Shot { frame: None, plate: args.plate.clone(), outputs }]);
+        return Ok(vec![Shot { frame: None, plate: args.plate.clone(), outputs: args.output.clone() }]);
     };
     let mut shots = Vec::new();
     for frame in frames.clone() {
-        let fill = |pattern: &str| -> Result<PathBuf, Failure> {
-            let (start, len) = hashes(pattern)
-                .ok_or_else(|| Failure::Usage(format!("{pattern} needs #### where the frame's number goes")))?;
-            Ok(PathBuf::from(format!("{}{frame:0len$}{}", &pattern[..start], &pattern[start + len..])))
+        let fill = |path: &PathBuf| {
+            pattern::number(path, frame).ok_or_else(|| {
+                Failure::Usage(format!("{} needs #### where the frame's number goes", shown::path(path)))
+            })
         };
-        let outputs = args.output.iter().map(|output| fill(output)).collect::<Result<_, _>>()?;
-        shots.push(Shot { frame: Some(frame), plate: fill(&plate)?, outputs });
+        let outputs = args.output.iter().map(fill).collect::<Result<_, _>>()?;
+        shots.push(Shot { frame: Some(frame), plate: fill(&args.plate)?, outputs });
     }
     let missing: Vec<String> =
-        shots.iter().filter(|shot| !shot.plate.is_file()).map(|shot| shot.plate.display().to_string()).collect();
+        shots.iter().filter(|shot| !shot.plate.is_file()).map(|shot| shown::path(&shot.plate)).collect();
     if let Some(first) = missing.first() {
         return Err(Failure::Usage(format!("the sequence has gaps: {first} is missing, {} in all", missing.len())));
     }
     Ok(shots)
-}
-
-/// Where a run of `#` starts in a name, and how long it is.
-fn hashes(name: &str) -> Option<(usize, usize)> {
-    // The last run: folders may have others.
-    let end = name.rfind('#')? + 1;
-    let len = name[..end].chars().rev().take_while(|&c| c == '#').count();
-    Some((end - len, len))
 }
 
 fn between(a: Place, b: Place, share: f64) -> Place {
@@ -331,13 +325,13 @@ fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     }
     let size = fs::metadata(path).map_err(|e| Failure::file("read", path, &e))?.len();
     if size > MOST_BYTES {
-        return Err(Failure::Usage(format!("{} has {size} bytes, {MOST_BYTES} at most are read", path.display())));
+        return Err(Failure::Usage(format!("{} has {size} bytes, {MOST_BYTES} at most are read", shown::path(path))));
     }
     fs::read(path).map_err(|e| Failure::file("read", path, &e))
 }
 
 fn read_plate(path: &Path, space: Option<PlateSpace>) -> Result<Plate, Failure> {
-    let wrong = |error: String| Failure::Usage(format!("cannot strike {}: {error}", path.display()));
+    let wrong = |error: String| Failure::Usage(format!("cannot strike {}: {error}", shown::path(path)));
     let mut plate = decode_plate(&read(path)?).map_err(|e| wrong(e.to_string()))?;
     let is_linear = matches!(plate.samples, Samples::Linear(_));
     match space {
@@ -358,7 +352,7 @@ fn read_plate(path: &Path, space: Option<PlateSpace>) -> Result<Plate, Failure> 
 }
 
 fn read_matte(path: &Path, plate: &Plate) -> Result<Grey, Failure> {
-    let wrong = |error: String| Failure::Usage(format!("{} is no matte here: {error}", path.display()));
+    let wrong = |error: String| Failure::Usage(format!("{} is no matte here: {error}", shown::path(path)));
     let matte = decode_grey(&read(path)?).map_err(|e| wrong(e.to_string()))?;
     let ([w, h], [width, height]) = (matte.size(), plate.frame());
     if [w, h] != [width, height] {

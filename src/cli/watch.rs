@@ -1,6 +1,6 @@
 //! `render --watch`: the picture follows the scene's files.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
@@ -14,8 +14,9 @@ use super::console::Console;
 use super::draw::{draw, report};
 use super::error::Failure;
 use super::jobs::Jobs;
+use super::output::is_stdout;
 use super::preview::{Drawn, is_exr, trace, view};
-use super::terminal;
+use super::{pattern, shown, terminal};
 use crate::math::Progress;
 use crate::trace::RenderSettings;
 
@@ -61,7 +62,7 @@ impl Sources {
             if let Some(folder) = path.parent().filter(|folder| !self.folders.contains(*folder)) {
                 self.watcher
                     .watch(folder, RecursiveMode::NonRecursive)
-                    .map_err(|error| Failure::Usage(format!("cannot watch {}: {error}", folder.display())))?;
+                    .map_err(|error| Failure::Usage(format!("cannot watch {}: {error}", shown::path(folder))))?;
                 self.folders.insert(folder.to_owned());
             }
             self.files.lock().unwrap_or_else(PoisonError::into_inner).insert(path);
@@ -85,20 +86,20 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
     let [scene] = &args.scene.scenes[..] else {
         return Err(Failure::Usage("--watch follows one scene".to_owned()));
     };
-    let file = PathBuf::from(scene);
-    if !file.is_file() {
+    if !scene.is_file() {
+        let scene = shown::path(scene);
         return Err(Failure::Usage(format!("--watch follows a scene file; `{scene}` is none (see `new`)")));
     }
     let output = output(args)?;
     let (send, changes) = channel();
     let mut sources = Sources::new(&output, send)?;
-    sources.follow(&file)?;
+    sources.follow(scene)?;
     let sources = Mutex::new(sources);
 
     loop {
         // Work on an outdated scene stops at the next change, all work at a signal.
         let outdated = Arc::new(AtomicBool::new(false));
-        let progress = console.progress_until(scene, Arc::clone(&outdated));
+        let progress = console.progress_until(&shown::path(scene), Arc::clone(&outdated));
         let result = std::thread::scope(|threads_here| {
             let work = threads_here.spawn(|| once(args, &output, &sources, threads, console, &progress));
             loop {
@@ -141,13 +142,14 @@ fn wait(console: &Console, changes: &std::sync::mpsc::Receiver<()>) -> Result<()
 
 fn output(args: &RenderArgs) -> Result<PathBuf, Failure> {
     // The scene may be wrong as yet: its own name is enough.
-    let name = Path::new(&args.scene.scenes[0]).file_stem().map_or("scene".into(), |n| n.to_string_lossy());
-    let pattern = args.output.clone().unwrap_or_else(|| "{scene}.png".to_owned());
-    let path = pattern.replace("{scene}", &name);
-    if path.contains('{') {
-        return Err(Failure::Usage("with --watch, {scene} is the only pattern".to_owned()));
+    let name = args.scene.scenes[0].file_stem().map_or("scene".into(), |n| n.to_string_lossy());
+    let pattern = args.output.clone().unwrap_or_else(|| "{scene}.png".into());
+    let values = BTreeMap::from([("scene".to_owned(), name.into_owned())]);
+    match pattern::fill(pattern.as_os_str(), &values) {
+        Ok(path) if is_stdout(&path) => Err(Failure::Usage("--watch writes a file, not standard output".to_owned())),
+        Ok(path) => Ok(path),
+        Err(_) => Err(Failure::Usage("with --watch, {scene} is the only pattern".to_owned())),
     }
-    Ok(PathBuf::from(path))
 }
 
 /// Once the whole way, coarse first.

@@ -8,6 +8,7 @@ use flate2::{Compression, GzBuilder};
 
 use super::console::Console;
 use super::error::Failure;
+use super::shown;
 use crate::export::{Pov, Rib, Templates};
 use crate::files::{encode_exr, is_edited, seal, write_atomic, write_bytes};
 
@@ -31,7 +32,7 @@ pub fn read_templates(folder: Option<&Path>) -> Result<Templates, Failure> {
         return Ok(templates);
     }
     let names: Vec<_> = Templates::names().collect();
-    Err(Failure::Usage(format!("{} has none of the templates {}", folder.display(), names.join(", "))))
+    Err(Failure::Usage(format!("{} has none of the templates {}", shown::path(folder), names.join(", "))))
 }
 
 /// What writing a scene did.
@@ -107,7 +108,10 @@ impl Written {
     fn keep_or_write(&mut self, text: &str, path: PathBuf, force: bool) -> Result<(), Failure> {
         let edited = match fs::read_to_string(&path) {
             Ok(old) => is_edited(&old),
-            Err(error) => error.kind() != std::io::ErrorKind::NotFound,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => false,
+            // Not what we wrote.
+            Err(error) if error.kind() == std::io::ErrorKind::InvalidData => true,
+            Err(error) => return Err(failure(&path, error)),
         };
         if edited && !force {
             self.kept.push(path);
