@@ -83,7 +83,7 @@ fn the_studio_is_carried_over() {
     require_povray();
     let folder = tempfile::tempdir().unwrap();
     for name in ["elm", "cactus", "papers/2008-fig05"] {
-        let common = ["render", name, "--size", "160x120"];
+        let common = ["render", name, "--size", "120x90"];
         succeed_in(folder.path(), &[&common[..], &["--samples", "32", "-o", "ours.png"]].concat());
         succeed_in(folder.path(), &[&common[..], &["--samples", "9", "--with", "povray", "-o", "theirs.png"]].concat());
         let [ours, theirs] =

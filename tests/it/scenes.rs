@@ -8,7 +8,7 @@ use lichtenberg::math::Progress;
 use lichtenberg::scene::{Loaded, check_claims, grow, model};
 use rayon::prelude::*;
 
-use crate::support::sample::sample;
+use crate::support::sample::{sample, without_heavy};
 use crate::support::{embedded, panic_text, scene_names};
 
 /// What the checks found in a scene; `Err` has what one of them said.
@@ -20,12 +20,12 @@ struct Checked {
 }
 
 /// The scenes whose RIB, OBJ and PLY are looked at too.
-static WHOLE: LazyLock<Vec<String>> = LazyLock::new(|| sample(scene_names(), 40));
+static WHOLE: LazyLock<Vec<String>> = LazyLock::new(|| sample(scene_names(), 20));
 
 /// Each scene is grown once for all checks that want every scene, on two threads; tests/bytes.rs has one.
 static CHECKED: LazyLock<Vec<Checked>> = LazyLock::new(|| {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
-    pool.install(|| scene_names().par_iter().with_max_len(1).map(|name| check(name)).collect())
+    pool.install(|| without_heavy(scene_names()).par_iter().with_max_len(1).map(|name| check(name)).collect())
 });
 
 fn check(name: &str) -> Checked {

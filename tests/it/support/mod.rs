@@ -4,6 +4,7 @@ pub mod plants;
 pub mod rib;
 pub mod sample;
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -47,6 +48,11 @@ pub fn export_changed(folder: &Path, base: &str, [from, to]: [&str; 2]) -> Outpu
     assert!(base.contains(from), "{from}");
     std::fs::write(folder.join("changed.toml"), base.replacen(from, to, 1)).expect("a scene is written");
     run_in(folder, &["export", "changed.toml", "--to", "pov", "-o", "out"])
+}
+
+/// Tells it on stderr, past the capture of tests that pass.
+pub fn tell(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{text}");
 }
 
 pub fn text(bytes: &[u8]) -> String {
@@ -131,14 +137,14 @@ pub fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Every file below `folder` whose name ends in `.ending`.
+/// Every file below `folder` whose name ends in `.ending`; all of them where that is empty.
 pub fn files_below(folder: &Path, ending: &str) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
         if path.is_dir() {
             files.extend(files_below(&path, ending));
-        } else if path.extension().is_some_and(|e| e == ending) {
+        } else if ending.is_empty() || path.extension().is_some_and(|e| e == ending) {
             files.push(path);
         }
     }

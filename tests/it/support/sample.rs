@@ -1,22 +1,31 @@
 //! A sample of the scenes for tests that take long: others with every commit, all for `./run-tests --all`.
 
-use std::io::Write;
 use std::process::Command;
 
-/// Scenes that take a minute in every test, more than all the others of a sample: for `./run-tests --all`.
-const HEAVY: [&str; 1] = ["forest"];
+/// Scenes that take longer than most others together, and grow as one of them does: for `./run-tests --all`.
+const HEAVY: [&str; 4] = ["aggregate", "forest", "ivy-word", "oak-summer"];
+
+/// The names but for those of heavy scenes; all with `LICHTENBERG_TEST_ALL` set.
+pub fn without_heavy(mut names: Vec<String>) -> Vec<String> {
+    names.retain(|name| tests_all() || !HEAVY.contains(&name.as_str()));
+    names
+}
+
+/// Is all to be tested, as by `./run-tests --all`?
+pub fn tests_all() -> bool {
+    std::env::var_os("LICHTENBERG_TEST_ALL").is_some()
+}
 
 /// `size` of the names, told on stderr; all with `LICHTENBERG_TEST_ALL` set.
-pub fn sample(mut names: Vec<String>, size: usize) -> Vec<String> {
-    if std::env::var_os("LICHTENBERG_TEST_ALL").is_some() {
+pub fn sample(names: Vec<String>, size: usize) -> Vec<String> {
+    if tests_all() {
         return names;
     }
     let commit = commit();
-    names.retain(|name| !HEAVY.contains(&name.as_str()));
+    let mut names = without_heavy(names);
     names.sort_by_key(|name| hash(&commit, name));
     names.truncate(size);
-    // Past the capture of tests that pass.
-    let _ = writeln!(std::io::stderr(), "sample of {commit}: {}", names.join(", "));
+    super::tell(&format!("sample of {commit}: {}", names.join(", ")));
     names
 }
 

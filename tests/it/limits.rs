@@ -1,0 +1,108 @@
+//! Limits of a call: time, bytes, memory.
+
+use std::fs;
+use std::process::Command;
+
+use crate::support::sample::tests_all;
+use crate::support::{run_in, succeed_in, text};
+
+#[test]
+fn time_runs_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["render", "elm", "--size", "4000x3000", "--samples", "4096", "-o", "a.png"];
+    let ended = run_in(folder.path(), &[&args[..], &["--max-seconds", "1"]].concat());
+    assert_eq!(ended.status.code(), Some(124), "{}", text(&ended.stderr));
+    assert!(text(&ended.stderr).contains("--max-seconds"));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    succeed_in(folder.path(), &["list", "--max-seconds", "1000"]);
+}
+
+#[test]
+fn files_stay_small() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["export", "elm", "--to", "pov", "-o", "out"];
+    let refused = run_in(folder.path(), &[&args[..], &["--max-bytes", "10k"]].concat());
+    assert_eq!(refused.status.code(), Some(2), "{}", text(&refused.stderr));
+    assert!(text(&refused.stderr).contains("--max-bytes"), "{}", text(&refused.stderr));
+    assert_eq!(fs::read_dir(folder.path().join("out")).unwrap().count(), 0);
+    succeed_in(folder.path(), &[&args[..], &["--max-bytes", "1G"]].concat());
+}
+
+#[test]
+fn comparisons_fit_into_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    succeed_in(folder.path(), &["render", "night-bolt", "--size", "700x500", "-o", "a/1.png"]);
+    fs::create_dir(at("b")).unwrap();
+    for name in ["a/2.png", "b/1.png", "b/2.png"] {
+        fs::copy(at("a/1.png"), at(name)).unwrap();
+    }
+    let refused = run_in(folder.path(), &["compare", "a", "b", "--max-memory", "50M"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stdout).contains("more than the 52 MB allowed"), "{}", text(&refused.stdout));
+    // One after the other.
+    succeed_in(folder.path(), &["compare", "a", "b", "--max-memory", "150M"]);
+}
+
+/// Others may leave half of a file: it is not taken for one that is done.
+#[test]
+fn half_a_file_is_not_skipped() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let render = ["render", "cactus", "--size", "64x48", "--samples", "1", "--skip-existing", "-o"];
+    for (name, args) in [
+        ("a.png", [&render[..], &["a.png"]].concat()),
+        ("a.exr", [&render[..], &["a.exr"]].concat()),
+        ("cactus.inc", vec!["export", "cactus", "--to", "pov", "--skip-existing"]),
+        ("storm.svg", vec!["export", "storm", "--to", "svg", "--skip-existing"]),
+    ] {
+        assert!(!succeed_in(folder.path(), &args).is_empty());
+        let whole = fs::read(at(name)).unwrap();
+        assert!(succeed_in(folder.path(), &args).is_empty(), "{name} is there");
+        for length in [0, whole.len() / 2, whole.len() - 1] {
+            fs::write(at(name), &whole[..length]).unwrap();
+            assert!(!succeed_in(folder.path(), &args).is_empty(), "{length} bytes of {name}");
+            assert!(fs::read(at(name)).unwrap() == whole);
+        }
+    }
+    // Nor is a folder one that was edited.
+    fs::remove_file(at("cactus.pov")).unwrap();
+    fs::create_dir(at("cactus.pov")).unwrap();
+    let refused = run_in(folder.path(), &["export", "cactus", "--to", "pov"]);
+    assert!(
+        refused.status.code() == Some(2) && text(&refused.stderr).contains("cactus.pov"),
+        "{}",
+        text(&refused.stderr)
+    );
+}
+
+/// A real disk without room, in a mount namespace of its own; `ulimit` stands for it on pushes.
+#[test]
+fn a_full_disk_keeps_the_old_file() {
+    if !tests_all() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    succeed_in(folder.path(), &["render", "night-bolt", "--size", "640x480", "-o", "plate.png"]);
+    let verbs = [
+        ("x.png", "render night-bolt --size 640x480 -o disk/x.png"),
+        ("x.exr", "render cactus --samples 1 -o disk/x.exr"),
+        ("x.inc", "export elm --to pov -o disk --name x"),
+        ("x.archive.rib", "export elm --to rib -o disk --name x"),
+        ("x.png", "strike plate.png --to 0.5,0.6 -o disk/x.png"),
+        ("x.html", "compare plate.png plate.png --html disk/x.html"),
+    ];
+    for (name, verb) in verbs {
+        let program = env!("CARGO_BIN_EXE_lichtenberg");
+        let script = format!(
+            "mkdir -p disk && mount -t tmpfs -o size=64k none disk && echo old > disk/{name} && \
+             {{ {program} {verb}; echo code $?; ls -A disk; cat disk/{name}; }}"
+        );
+        let output = Command::new("unshare").args(["-rm", "sh", "-c", &script]).current_dir(folder.path()).output();
+        let output = output.expect("unshare (util-linux)");
+        let said = text(&output.stdout);
+        assert!(output.status.success(), "a namespace for a small disk is needed: {}", text(&output.stderr));
+        assert!(said.ends_with(&format!("code 2\n{name}\nold\n")), "{verb}: {said} {}", text(&output.stderr));
+        assert!(text(&output.stderr).contains("No space left"), "{verb}: {}", text(&output.stderr));
+    }
+}
