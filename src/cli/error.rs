@@ -26,7 +26,11 @@ pub enum Failure {
 impl Failure {
     /// A usage error about a file.
     pub fn file(action: &str, path: &std::path::Path, error: &std::io::Error) -> Self {
-        let hint = if error.kind() == std::io::ErrorKind::FileTooLarge { ", more than --max-bytes allows" } else { "" };
+        let hint = if error.kind() == std::io::ErrorKind::FileTooLarge {
+            ", more than --max-bytes or the system allows"
+        } else {
+            ""
+        };
         Self::Usage(format!("cannot {action} {}: {error}{hint}", shown::path(path)))
     }
 

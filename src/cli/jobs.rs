@@ -124,6 +124,7 @@ impl Jobs {
         }
         let pattern = pattern(args, seeds.len() > 1);
         let max_memory = args.limits.max_memory.unwrap_or_else(memory::default_limit);
+        memory::hold(max_memory);
         Ok(Self { list, pattern, size: args.size, max_memory, reads })
     }
 

@@ -1,7 +1,14 @@
-//! How much memory we may take: three quarters of the least of machine, enclosing control groups, Slurm allocation.
+//! How much memory we may take: three quarters of the least of machine, enclosing control groups, Slurm allocation; and that
+//! it is no more.
 
 use std::fs;
+use std::io::{Write, stderr};
 use std::path::{Path, PathBuf};
+use std::sync::Once;
+use std::thread;
+use std::time::Duration;
+
+use crate::files::exit;
 
 /// Where nothing else is known.
 const FALLBACK: u64 = 4 << 30;
@@ -9,6 +16,39 @@ const FALLBACK: u64 = 4 << 30;
 /// The default of `--max-memory`, in bytes.
 pub fn default_limit() -> u64 {
     limit([machine(), control_group(Path::new("/sys/fs/cgroup")), slurm(&|name| std::env::var(name).ok())])
+}
+
+/// What the program takes for itself, whatever it makes.
+const OWN: u64 = 32 << 20;
+/// How often we look how much memory we take.
+const POLL: Duration = Duration::from_millis(20);
+
+/// From now on the process ends, with one clear error, when it takes more than `limit` bytes besides [`OWN`]. Estimates refuse what
+/// is too large before work starts; they do not know how much of it comes after growth.
+pub fn hold(limit: u64) {
+    static HELD: Once = Once::new();
+    HELD.call_once(|| {
+        let watch = move || {
+            while let Some(taken) = resident() {
+                if taken > limit.saturating_add(OWN) {
+                    let _ = writeln!(
+                        stderr(),
+                        "error: it takes more than the {} MB of memory allowed: make less of it, or raise --max-memory",
+                        limit / 1_000_000
+                    );
+                    exit(2);
+                }
+                thread::sleep(POLL);
+            }
+        };
+        // Without a thread the estimates alone hold.
+        let _ = thread::Builder::new().spawn(watch);
+    });
+}
+
+/// Bytes of memory that we take; `None` where the system does not tell.
+fn resident() -> Option<u64> {
+    kilobytes(&fs::read_to_string("/proc/self/status").ok()?, "VmRSS:")
 }
 
 /// Three quarters of the least of what is known.

@@ -45,6 +45,8 @@ pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
         (None, seed) => vec![seed],
     };
     let shots = shots(args, seeds.len())?;
+    let max_memory = args.limits.max_memory.unwrap_or_else(memory::default_limit);
+    memory::hold(max_memory);
     let track = args.track.as_ref().map(|path| Table::read(path, parse_place)).transpose()?;
     let number = |text: &str| match text.parse::<f64>() {
         Ok(x) if (0.0..1e6).contains(&x) => Ok(x),
@@ -96,7 +98,6 @@ pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
             (view.plate, view.matte) = (Some(Arc::clone(&plate)), matte.clone());
             let label = seed.map_or_else(|| source.name.clone(), |seed| format!("seed {seed}"));
             let progress = console.progress(&label);
-            let max_memory = args.limits.max_memory.unwrap_or_else(memory::default_limit);
             let grown = scene::grow(&resolved, &[], max_memory, &progress)?;
             let mut strokes = scene::model(&resolved, &grown, resolved.recipe.size, &progress)?.strokes;
             let told = match (&intensity, shot.frame) {

@@ -1,10 +1,12 @@
 //! Limits of a call: time, bytes, memory.
 
 use std::fs;
-use std::process::Command;
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
 
 use crate::support::sample::tests_all;
-use crate::support::{run_in, succeed_in, text};
+use crate::support::{lichtenberg, run_in, succeed_in, text};
 
 #[test]
 fn time_runs_out() {
@@ -42,6 +44,34 @@ fn comparisons_fit_into_memory() {
     assert!(text(&refused.stdout).contains("more than the 52 MB allowed"), "{}", text(&refused.stdout));
     // One after the other.
     succeed_in(folder.path(), &["compare", "a", "b", "--max-memory", "150M"]);
+}
+
+/// What no estimate knows, for it comes after growth, ends when it takes too much.
+#[cfg(target_os = "linux")]
+#[test]
+fn memory_is_held() {
+    let folder = tempfile::tempdir().unwrap();
+    let fine = "object.cactus.skin={ isosurface = { spacing = 0.006 } }";
+    let mut child = lichtenberg()
+        .current_dir(folder.path())
+        .args(["export", "cactus", "--to", "obj", "--set", fine, "--max-memory", "200M"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let status = format!("/proc/{}/status", child.id());
+    let mut peak = 0_u64;
+    while child.try_wait().unwrap().is_none() {
+        let text = fs::read_to_string(&status).unwrap_or_default();
+        let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let kilobytes = line.and_then(|line| line.split_whitespace().next()?.parse().ok());
+        peak = peak.max(kilobytes.unwrap_or(0));
+        sleep(Duration::from_millis(5));
+    }
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("more than the 209 MB of memory allowed"), "{}", text(&output.stderr));
+    // What a scene takes within the time between two looks, at the pace of memory that is filled by two threads.
+    assert!(peak > 200 << 10 && peak < 600 << 10, "{peak} kB");
 }
 
 /// Others may leave half of a file: it is not taken for one that is done.

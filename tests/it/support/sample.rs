@@ -3,7 +3,7 @@
 use std::process::Command;
 
 /// Scenes that take longer than most others together, and grow as one of them does: for `./run-tests --all`.
-const HEAVY: [&str; 4] = ["aggregate", "forest", "ivy-word", "oak-summer"];
+const HEAVY: [&str; 6] = ["aggregate", "forest", "ivy-word", "oak-summer", "papers/2007-fig11", "papers/2008-fig10"];
 
 /// The names but for those of heavy scenes; all with `LICHTENBERG_TEST_ALL` set.
 pub fn without_heavy(mut names: Vec<String>) -> Vec<String> {
