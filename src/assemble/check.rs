@@ -17,5 +17,7 @@ pub fn check(recipe: &Recipe, max_memory: u64, progress: &Progress) -> Vec<Assem
         progress.check()?;
         Ok(step.check_places(&context)?)
     });
-    checked.filter_map(Result::err).collect()
+    let camera = recipe.camera.check().map_err(AssembleError::Camera);
+    let camera = if recipe.view.is_none() { camera } else { Ok(()) };
+    checked.chain([camera]).filter_map(Result::err).collect()
 }

@@ -34,6 +34,21 @@ impl Default for CameraSpec {
 }
 
 impl CameraSpec {
+    /// Do `at`, `look_at` and `angle` fit together?
+    ///
+    /// # Errors
+    /// [`CameraError`].
+    pub fn check(&self) -> Result<(), CameraError> {
+        match (self.at, self.look_at) {
+            (None, None) => Ok(()),
+            (Some(_), None) => Err(CameraError::LooksNowhere),
+            (None, Some(_)) => Err(CameraError::StandsNowhere),
+            (Some(at), Some(look_at)) if at.0.truncate() == look_at.0.truncate() => Err(CameraError::Upright),
+            _ if self.angle.radians() <= 0.0 => Err(CameraError::NoAngle),
+            _ => Ok(()),
+        }
+    }
+
     /// From the front, parallel: the view of flat scenes.
     #[must_use]
     pub fn front() -> Self {
@@ -114,21 +129,10 @@ impl Camera {
         aspect: f64,
         balls: impl Iterator<Item = (DVec3, f64)> + Clone,
     ) -> Result<Self, CameraError> {
-        let angle = spec.angle.radians();
-        if let Some(at) = spec.at {
-            let look_at = spec.look_at.ok_or(CameraError::LooksNowhere)?;
-            let way = look_at.0 - at.0;
-            if way.x == 0.0 && way.y == 0.0 {
-                return Err(CameraError::Upright);
-            }
-            if angle <= 0.0 {
-                return Err(CameraError::NoAngle);
-            }
-            let projection = Projection::Perspective { angle };
+        spec.check()?;
+        if let (Some(at), Some(look_at)) = (spec.at, spec.look_at) {
+            let projection = Projection::Perspective { angle: spec.angle.radians() };
             return Ok(Self { at: at.0, look_at: look_at.0, projection, aspect });
-        }
-        if spec.look_at.is_some() {
-            return Err(CameraError::StandsNowhere);
         }
         Ok(Self::fitted(spec, aspect, balls))
     }
