@@ -46,19 +46,23 @@ struct Files {
     name: PathBuf,
     expected: PathBuf,
     actual: PathBuf,
+    /// Bytes that comparing them takes; 0 where a file is missing or cannot be read.
+    bytes_needed: u64,
 }
 
 impl Files {
+    fn new(name: PathBuf, expected: PathBuf, actual: PathBuf) -> Self {
+        let extents = [&expected, &actual].map(|path| picture_extent(path, is_exr(path)));
+        let needed = match extents {
+            [Some(e), Some(a)] => bytes_needed([e.pixels, a.pixels], [e.channels, a.channels]),
+            _ => 0,
+        };
+        Self { name, expected, actual, bytes_needed: needed }
+    }
+
     /// The name in reports and in `compare.toml`.
     fn shown(&self) -> String {
         shown::path(&self.name).replace('\\', "/")
-    }
-
-    /// Bytes that comparing them takes; 0 where a file is missing or cannot be read.
-    fn bytes_needed(&self) -> u64 {
-        let [expected, actual] = [&self.expected, &self.actual].map(|path| picture_extent(path, is_exr(path)));
-        let (Some(e), Some(a)) = (expected, actual) else { return 0 };
-        bytes_needed([e.pixels, a.pixels], [e.channels, a.channels])
     }
 }
 
@@ -137,10 +141,10 @@ fn difference_path(folder: &Path, name: &Path) -> PathBuf {
 
 /// Runs of `files` that can be compared side by side within `max_memory` bytes.
 fn batches(files: &[Files], max_memory: u64) -> Vec<&[Files]> {
-    let needed: Vec<u64> = files.iter().map(Files::bytes_needed).collect();
     let mut batches = Vec::new();
     let (mut start, mut sum) = (0, 0_u64);
-    for (i, &needed) in needed.iter().enumerate() {
+    for (i, pair) in files.iter().enumerate() {
+        let needed = pair.bytes_needed;
         sum = sum.saturating_add(needed);
         if sum > max_memory && i > start {
             batches.push(&files[start..i]);
@@ -192,7 +196,7 @@ fn find(args: &CompareArgs) -> Result<Vec<Files>, Failure> {
                 shown::path(actual)
             )));
         }
-        return Ok(vec![Files { name, expected: expected.clone(), actual: actual.clone() }]);
+        return Ok(vec![Files::new(name, expected.clone(), actual.clone())]);
     }
     let mut names = BTreeSet::new();
     for folder in [expected, actual] {
@@ -200,10 +204,7 @@ fn find(args: &CompareArgs) -> Result<Vec<Files>, Failure> {
             list(folder, Path::new(""), &mut names).map_err(|e| Failure::file("read", folder, &e))?;
         }
     }
-    Ok(names
-        .into_iter()
-        .map(|name| Files { expected: expected.join(&name), actual: actual.join(&name), name })
-        .collect())
+    Ok(names.into_iter().map(|name| Files::new(name.clone(), expected.join(&name), actual.join(&name))).collect())
 }
 
 /// The pictures below `folder`, by their paths within it.
@@ -249,7 +250,7 @@ fn compare(
         changes: Vec::new(),
     };
     let mut panel = Panel::default();
-    let needed = files.bytes_needed();
+    let needed = files.bytes_needed;
     if needed > max_memory {
         let [needed, most] = [needed.div_ceil(1_000_000), max_memory / 1_000_000];
         let reason = format!("comparing them needs about {needed} MB of memory, more than the {most} MB allowed");
