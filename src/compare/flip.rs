@@ -230,18 +230,18 @@ pub(super) fn bytes_needed(pixels: u64) -> u64 {
 }
 
 impl Rows<'_> {
-    /// Bands of rows.
-    fn bands(&self) -> impl Iterator<Item = Range<usize>> + use<> {
+    /// Bands of rows, of about so many `pixels`.
+    fn bands(&self, pixels: usize) -> impl Iterator<Item = Range<usize>> + use<> {
         let [width, height] = self.size;
-        let rows = (BAND / width.max(1)).max(1);
+        let rows = (pixels / width.max(1)).max(1);
         (0..height.div_ceil(rows)).map(move |i| i * rows..((i + 1) * rows).min(height))
     }
 
-    /// What `flip` makes of all bands; it is given each with the rows around it that filters reach.
-    fn map(&self, ppd: f64, flip: impl Fn([&[[f32; 3]]; 2]) -> Vec<f32>) -> Vec<f32> {
+    /// What `flip` makes of all bands of so many `pixels`; it is given each with the rows around it that filters reach.
+    fn map(&self, pixels: usize, ppd: f64, flip: impl Fn([&[[f32; 3]]; 2]) -> Vec<f32>) -> Vec<f32> {
         let [width, height] = self.size;
         let mut map = Vec::with_capacity(width * height);
-        for band in self.bands() {
+        for band in self.bands(pixels) {
             let around = band.start.saturating_sub(reach(ppd))..(band.end + reach(ppd)).min(height);
             let [expected, actual] = (self.read)(around.clone());
             let all = flip([&expected, &actual]);
@@ -256,7 +256,7 @@ impl Rows<'_> {
 /// [`PIXELS_PER_DEGREE`].
 #[must_use]
 pub fn flip_ldr(rows: &Rows<'_>, ppd: f64) -> Vec<f32> {
-    rows.map(ppd, |pixels| ldr(rows.size[0], pixels, ppd))
+    rows.map(BAND, ppd, |pixels| ldr(rows.size[0], pixels, ppd))
 }
 
 /// The ACES tone mapping of HDR-FLIP, as a rational function (Narkowicz 2015).
@@ -270,7 +270,7 @@ fn aces(x: f64) -> f64 {
 #[must_use]
 pub fn flip_hdr(rows: &Rows<'_>, ppd: f64) -> Vec<f32> {
     let luminance = |visit: &mut dyn FnMut(f64)| {
-        for [expected, _] in rows.bands().map(rows.read) {
+        for [expected, _] in rows.bands(BAND).map(rows.read) {
             expected.iter().map(|p| xyz(p.map(f64::from))[1]).filter(|y| y.is_finite()).for_each(&mut *visit);
         }
     };
@@ -282,7 +282,7 @@ pub fn flip_hdr(rows: &Rows<'_>, ppd: f64) -> Vec<f32> {
     let most = ranked(&luminance, |count| count.saturating_sub(1)).unwrap_or(1.0).max(median);
     let (start, stop) = (libm::log2(x_max / most), libm::log2(x_max / median));
     let count = libm::ceil(stop - start).clamp(2.0, 64.0);
-    rows.map(ppd, |pixels| {
+    rows.map(BAND, ppd, |pixels| {
         let mut flip = vec![0.0_f32; pixels[0].len()];
         for i in 0..count as u32 {
             let scale = libm::exp2(start + (stop - start) * f64::from(i) / (count - 1.0));
@@ -335,10 +335,14 @@ mod tests {
 
     type Flip = fn(&Rows<'_>, f64) -> Vec<f32>;
 
-    fn flip(flip: Flip, width: usize, [expected, actual]: [&[[f32; 3]]; 2]) -> Vec<f32> {
+    fn flip(flip: Flip, width: usize, pictures: [&[[f32; 3]]; 2]) -> Vec<f32> {
+        with_rows(width, pictures, |rows| flip(rows, PIXELS_PER_DEGREE))
+    }
+
+    fn with_rows<T>(width: usize, [expected, actual]: [&[[f32; 3]]; 2], of: impl FnOnce(&Rows<'_>) -> T) -> T {
         let read =
             |rows: Range<usize>| [expected, actual].map(|pixels| pixels[rows.start * width..rows.end * width].to_vec());
-        flip(&Rows { size: [width, expected.len() / width], read: &read }, PIXELS_PER_DEGREE)
+        of(&Rows { size: [width, expected.len() / width], read: &read })
     }
 
     fn linear(pixels: &[[u8; 3]]) -> Vec<[f32; 3]> {
@@ -380,10 +384,15 @@ mod tests {
     /// Bands give what the whole picture gives, to the bit.
     #[test]
     fn bands_do_not_show() {
-        let (width, height) = (16_384, 75);
+        let (width, height) = (320, 150);
         let [expected, actual] = pair(width, height, 5).map(|pixels| linear(&pixels));
-        let whole = ldr(width as usize, [&expected, &actual], PIXELS_PER_DEGREE);
-        assert!(flip(flip_ldr, width as usize, [&expected, &actual]) == whole);
+        let width = width as usize;
+        let whole = ldr(width, [&expected, &actual], PIXELS_PER_DEGREE);
+        let bands = with_rows(width, [&expected, &actual], |rows| {
+            assert_eq!(rows.bands(width * 32).count(), 5);
+            rows.map(width * 32, PIXELS_PER_DEGREE, |pixels| ldr(width, pixels, PIXELS_PER_DEGREE))
+        });
+        assert!(bands == whole);
     }
 
     #[test]

@@ -37,7 +37,7 @@ fn covered(picture: &Rgba) -> f64 {
 fn every_scene_renders_without_a_warning() {
     require_povray();
     let names = scene_names().into_iter().filter(|name| !name.starts_with("papers/2012")).collect();
-    let names = sample(names, 6);
+    let names = sample(names, 4);
     names.par_iter().for_each(|name| {
         let folder = tempfile::tempdir().unwrap();
         let common = ["render", name, "--with", "povray", "--size", "160x120", "-o", "{scene}.png"];

@@ -5,24 +5,18 @@ use std::process::Command;
 /// Scenes that take longer than most others together, and grow as one of them does: for `./run-tests --all`.
 const HEAVY: [&str; 6] = ["aggregate", "forest", "ivy-word", "oak-summer", "papers/2007-fig11", "papers/2008-fig10"];
 
-/// The names but for those of heavy scenes; all with `LICHTENBERG_TEST_ALL` set.
-pub fn without_heavy(mut names: Vec<String>) -> Vec<String> {
-    names.retain(|name| tests_all() || !HEAVY.contains(&name.as_str()));
-    names
-}
-
 /// Is all to be tested, as by `./run-tests --all`?
 pub fn tests_all() -> bool {
     std::env::var_os("LICHTENBERG_TEST_ALL").is_some()
 }
 
-/// `size` of the names, told on stderr; all with `LICHTENBERG_TEST_ALL` set.
-pub fn sample(names: Vec<String>, size: usize) -> Vec<String> {
+/// `size` of the names, none of them a heavy scene's, told on stderr; all with `LICHTENBERG_TEST_ALL` set.
+pub fn sample(mut names: Vec<String>, size: usize) -> Vec<String> {
     if tests_all() {
         return names;
     }
     let commit = commit();
-    let mut names = without_heavy(names);
+    names.retain(|name| !HEAVY.contains(&name.as_str()));
     names.sort_by_key(|name| hash(&commit, name));
     names.truncate(size);
     super::tell(&format!("sample of {commit}: {}", names.join(", ")));
