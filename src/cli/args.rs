@@ -7,6 +7,7 @@ use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
 use super::place::{Place, parse_place};
 use crate::compare::Metric;
+use crate::export::Rib;
 use crate::geom::MarkKind;
 use crate::scene::Override;
 
@@ -166,8 +167,8 @@ pub struct ExportArgs {
     /// Draw marks of the construction too (svg)
     #[arg(long, value_enum, value_delimiter = ',', value_name = "MARKS")]
     pub show: Vec<Show>,
-    /// How the scene has its shadows (rib); none by default
-    #[arg(long, value_enum)]
+    /// How the scene has its shadows (rib); maps by default
+    #[arg(long, alias = "rib-shadows", value_enum)]
     pub shadows: Option<Shadows>,
     /// Leave thorns to a displacement shader, thorns.sl, which is written too and must be compiled (rib)
     #[arg(long)]
@@ -402,11 +403,11 @@ impl Renderer {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Shadows {
-    /// No shadows: what every renderer takes
+    /// No shadows, for speed
     None,
-    /// Traced by the light `raydistant`, which Pixie has
+    /// Traced by the light `raydistant`, which Pixie has: sharper
     Rays,
-    /// Maps that the scene makes first, read by the light `shadowdistant`, which Aqsis has
+    /// Maps that the scene makes first, which Pixie and Aqsis both read
     Maps,
 }
 
@@ -435,7 +436,7 @@ impl Format {
             Self::Ply => &[".ply"],
         };
         let own = endings.iter().map(|ending| format!("{name}{ending}"));
-        own.chain((self == Self::Rib).then(|| "thorns.sl".to_owned())).collect()
+        own.chain(Rib::shader_files().filter(|_| self == Self::Rib)).collect()
     }
 
     /// The ending of the file that it makes, or of the first of them.

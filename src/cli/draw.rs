@@ -10,9 +10,9 @@ use super::error::Failure;
 use super::jobs::{Job, Jobs};
 use super::output;
 use super::preview::{Drawn, samples, shine, trace, view};
-use super::write::{note_patterns, read_templates, write_pov, write_rib};
+use super::write::{read_templates, write_pov, write_rib};
 use crate::export::{Origin, Pov, Rib, RibOptions, RibShadows, SvgOptions, Templates, write_svg};
-use crate::files::{Rgba, Scratch, decode_png, draw_svg};
+use crate::files::{Rgba, Scratch, decode_light, decode_png, draw_svg};
 use crate::geom::MarkKind;
 use crate::math::Progress;
 use crate::model::Model;
@@ -83,7 +83,7 @@ pub fn draw(
         if args.look == Look::Studio {
             console.note("note: RIB shows the exact look; the studio look is the preview's and POV-Ray's");
         }
-        render_rib(renderer, &model, &templates, folder.path(), size, &origin, console, progress)?
+        render_rib(renderer, &model, &templates, folder.path(), size, &origin, progress)?
     } else {
         let pov = Pov::new(&model, &templates, SCENE, size, &origin);
         let povray = Povray {
@@ -137,7 +137,6 @@ fn render_pov(
 }
 
 /// The picture of a renderer that reads RIB.
-#[allow(clippy::too_many_arguments, reason = "a model, where it goes, and who listens")]
 fn render_rib(
     renderer: RibRenderer,
     model: &Model,
@@ -145,20 +144,22 @@ fn render_rib(
     folder: &Path,
     size: [u32; 2],
     origin: &Origin,
-    console: &Console,
     progress: &Progress,
 ) -> Result<Rgba, Failure> {
     let shadows = match renderer {
         RibRenderer::Pixie => RibShadows::Rays,
         RibRenderer::Aqsis => RibShadows::Maps,
     };
-    let rib = Rib::new(model, templates, "scene", size, origin, RibOptions { shadows, displace: false });
-    note_patterns(&rib, console);
-    write_rib(&rib, folder, "scene", false, true)?;
+    let options = RibOptions { shadows, displace: false, linear: true };
+    let rib = Rib::new(model, templates, SCENE, size, origin, options);
+    let written = write_rib(&rib, folder, SCENE, false, true)?;
+    for file in written.files.iter().filter(|file| file.extension().is_some_and(|ending| ending == "sl")) {
+        renderer.compile(folder, &file.file_name().unwrap_or_default().to_string_lossy(), progress)?;
+    }
     renderer.render(folder, "scene.rib", "scene.tif", progress)?;
     let wrong = |e: String| Failure::Outside(format!("{}'s picture cannot be read: {e}", renderer.program()));
     let bytes = fs::read(folder.join("scene.tif")).map_err(|e| wrong(e.to_string()))?;
-    let picture = decode_png(&bytes).map_err(|e| wrong(e.to_string()))?;
+    let picture = decode_light(&bytes).map_err(|e| wrong(e.to_string()))?;
     if picture.bytes.chunks_exact(4).all(|pixel| pixel[..3] == picture.bytes[..3]) {
         return Err(wrong("it is blank".to_owned()));
     }

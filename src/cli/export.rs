@@ -13,7 +13,7 @@ use super::jobs::{Job, Jobs};
 use super::output::{self, is_stdout};
 use super::render::check_name;
 use super::shown;
-use super::write::{Written, note_patterns, read_templates, write_pov, write_rib};
+use super::write::{Written, read_templates, write_pov, write_rib};
 use crate::export::{Pov, Rib, RibOptions, RibShadows, SvgOptions, Templates, write_obj, write_ply, write_svg};
 use crate::geom::MarkKind;
 use crate::model::{Model, Object};
@@ -134,13 +134,12 @@ fn write(
         }
         Format::Rib => {
             let origin = job.origin(scene.recipe.seed, "export");
-            let shadows = args.shadows.map_or(RibShadows::None, Shadows::of);
-            let options = RibOptions { shadows, displace: args.displace };
+            let shadows = args.shadows.map_or(RibShadows::default(), Shadows::of);
+            let options = RibOptions { shadows, displace: args.displace, linear: false };
             if args.displace && model.objects.iter().any(leans) {
                 console.note("note: displaced thorns stand upright: only those that are cones `lean`");
             }
             let rib = Rib::new(model, templates, target.name, scene.recipe.size, &origin, options);
-            note_patterns(&rib, console);
             Ok(told(write_rib(&rib, target.folder, target.name, args.gzip, args.force)?, console))
         }
     }

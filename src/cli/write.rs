@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 
 use flate2::{Compression, GzBuilder};
 
-use super::console::Console;
 use super::error::Failure;
 use super::shown;
 use crate::export::{Pov, Rib, Templates};
@@ -68,11 +67,12 @@ pub fn write_pov(pov: &Pov<'_>, folder: &Path, name: &str, force: bool) -> Resul
     Ok(written)
 }
 
-/// Writes NAME.archive.rib, always, and NAME.rib, unless it was edited; thorns.sl where the scene uses it.
+/// Writes NAME.archive.rib, always, and NAME.rib, unless it was edited; the shaders that the scene uses and no renderer has.
 pub fn write_rib(rib: &Rib<'_>, folder: &Path, name: &str, gzip: bool, force: bool) -> Result<Written, Failure> {
     let archive = folder.join(format!("{name}.archive.rib"));
     let scene = folder.join(format!("{name}.rib"));
     let text = seal("#", &rib.scene().map_err(|e| failure(&scene, e))?);
+    let shaders = rib.shaders().map_err(|e| failure(&scene, e))?;
     let mut written = Written { files: Vec::new(), kept: Vec::new() };
     let casters = rib.has_casters().then(|| (folder.join(format!("{name}.casters.rib")), true));
     for (path, is_casters) in std::iter::once((archive, false)).chain(casters) {
@@ -88,8 +88,8 @@ pub fn write_rib(rib: &Rib<'_>, folder: &Path, name: &str, gzip: bool, force: bo
         .map_err(|e| failure(&path, e))?;
         written.files.push(path);
     }
-    if let Some(shader) = rib.shader() {
-        let path = folder.join("thorns.sl");
+    for (file, shader) in shaders {
+        let path = folder.join(file);
         // One that differs was edited.
         let is_kept = !force && fs::read(&path).is_ok_and(|old| old != shader.as_bytes());
         if is_kept {
@@ -128,12 +128,5 @@ fn failure(path: &Path, error: std::io::Error) -> Failure {
         // The template's own error says which it is.
         std::io::ErrorKind::InvalidData => Failure::Usage(error.to_string()),
         _ => Failure::file("write", path, &error),
-    }
-}
-
-/// Tells of patterns that RIB does not show.
-pub fn note_patterns(rib: &Rib<'_>, console: &Console) {
-    for material in rib.plain_patterns() {
-        console.note(&format!("note: RIB shows the pattern of `{material}` as its mean colour"));
     }
 }

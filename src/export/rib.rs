@@ -1,15 +1,13 @@
 //! RenderMan RIB: a scene, and an archive of its objects, in what Pixie and Aqsis both take (`reference/rib.md`).
 
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-use super::decimal::plain_number as number;
 use super::rib_body::write_object;
 use super::rib_options::RibOptions;
-use super::rib_text::{PLAIN, colour};
 use super::rib_values::{RibValues, has_casters, values};
 use super::{Origin, TemplateError, Templates};
-use crate::math::Colour;
-use crate::model::{Material, Model, Object};
+use crate::model::{Light, Model, Object, Pattern};
 
 /// A model on its way to RIB.
 pub struct Rib<'a> {
@@ -33,27 +31,44 @@ impl<'a> Rib<'a> {
         Self { model, templates, options, values: values(model, name, size, origin, options) }
     }
 
-    /// The materials whose patterns it shows as their mean colour alone: RenderMan has no standard shader for them.
-    pub fn plain_patterns(&self) -> impl Iterator<Item = &str> {
-        self.model.materials.iter().filter(|(_, material)| material.pattern.is_some()).map(|(name, _)| name.as_str())
-    }
-
     /// The text of `NAME.rib`, without the line that tells whether it was edited.
     ///
     /// # Errors
     /// [`io::ErrorKind::InvalidData`] around a [`TemplateError`].
     pub fn scene(&self) -> io::Result<String> {
-        self.templates
-            .fill("scene.rib", &self.values)
-            .map_err(|error: TemplateError| io::Error::new(io::ErrorKind::InvalidData, error))
+        self.templates.fill("scene.rib", &self.values).map_err(invalid)
     }
 
-    /// The displacement shader `thorns.sl`, where the scene uses it.
-    #[must_use]
-    pub fn shader(&self) -> Option<&str> {
-        let limbs = self.model.objects.iter().filter_map(|object| object.body.limbs());
-        let is_used = self.options.displace && limbs.into_iter().any(|limbs| limbs.thorns.is_some());
-        is_used.then(|| self.templates.text("thorns.sl"))
+    /// The files that [`Self::shaders`] may name.
+    pub fn shader_files() -> impl Iterator<Item = String> {
+        ["thorns", "fadepoint"].into_iter().chain(Pattern::NAMES).map(|name| format!("{name}.sl"))
+    }
+
+    /// The shaders that the scene uses and no renderer has, by file name: they must be compiled.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::InvalidData`] around a [`TemplateError`].
+    pub fn shaders(&self) -> io::Result<Vec<(String, String)>> {
+        let objects = || self.model.objects.iter();
+        let limbs = || objects().filter_map(|object| object.body.limbs());
+        let mut names = BTreeMap::new();
+        if self.options.displace && limbs().any(|limbs| limbs.thorns.is_some()) {
+            names.insert("thorns", None);
+        }
+        if self.model.lights.iter().any(|light| matches!(light, Light::Point { .. })) {
+            names.insert("fadepoint", None);
+        }
+        let laid = objects().filter(|object| object.body.limbs().is_some());
+        let patterns = laid.filter_map(|object| self.model.materials[object.material].1.pattern);
+        for pattern in patterns {
+            names.insert(pattern.figure().name(), Some(pattern.figure().share().to_string()));
+        }
+        let text = |name: &str, share: Option<String>| match share {
+            None => Ok(self.templates.text(&format!("{name}.sl")).to_owned()),
+            Some(share) => self.templates.fill("pattern.sl", BTreeMap::from([("name", name), ("share", &share)])),
+        };
+        let texts = names.into_iter().map(|(name, share)| Ok((format!("{name}.sl"), text(name, share)?)));
+        texts.collect::<Result<_, TemplateError>>().map_err(invalid)
     }
 
     /// Do its shadow maps need an archive of their own, `NAME.casters.rib`, since some objects cast no shadow?
@@ -84,29 +99,12 @@ impl<'a> Rib<'a> {
         let shown = |object: &&Object| is_wanted(object) && !(self.options.displace && is_thorns(object));
         for (handle, object) in (1..).zip(self.model.objects.iter().filter(shown)) {
             let (_, material) = &self.model.materials[object.material];
-            write_object(object, &surface(material), handle, self.options, &mut out)?;
+            write_object(object, material, handle, self.options, &mut out)?;
         }
         Ok(())
     }
 }
 
-/// The surface of a material: a colour and a standard shader.
-fn surface(m: &Material) -> String {
-    // The ambient light is 1: light of its own adds to it.
-    let [ka, kd] = [m.ambient + m.emission, m.diffuse].map(|x| number(x, PLAIN));
-    let Colour(c) = m.mean_colour();
-    if m.diffuse == 0.0 && m.ambient == 0.0 {
-        return format!("Color [{}]\nSurface \"constant\"", colour(Colour(c.map(|c| c * m.emission))));
-    }
-    let shine = m.specular.max(m.phong);
-    let shader = if shine > 0.0 {
-        let rough = if m.specular > 0.0 { m.roughness } else { 1.0 / m.phong_size };
-        let [ks, rough] = [shine, rough].map(|x| number(x, PLAIN));
-        format!(
-            "Surface \"plastic\" \"float Ka\" [{ka}] \"float Kd\" [{kd}] \"float Ks\" [{ks}] \"float roughness\" [{rough}]"
-        )
-    } else {
-        format!("Surface \"matte\" \"float Ka\" [{ka}] \"float Kd\" [{kd}]")
-    };
-    format!("Color [{}]\n{shader}", colour(Colour(c)))
+fn invalid(error: TemplateError) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, error)
 }

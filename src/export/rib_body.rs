@@ -1,15 +1,16 @@
-//! The bodies of RIB objects: spheres, hyperboloids and polygon meshes, streamed.
+//! The bodies of RIB objects: limbs and polygon meshes, streamed.
 
 use std::io::{self, Write};
 
-use super::buffer::{BUFFER, flush_at};
+use super::buffer::BUFFER;
 use super::decimal::{plain_number as number, push_plain as push_number};
 use super::identifier::plain;
+use super::rib_limbs::write_limbs;
 use super::rib_options::{RibOptions, RibShadows};
+use super::rib_surface::surface;
 use super::rib_text::{MATRIX, triple};
-use crate::geom::frustum;
 use crate::math::DVec3;
-use crate::model::{Body, Digits, Instance, Limbs, Mesh, Object, Pose};
+use crate::model::{Body, Digits, Instance, Material, Mesh, Object, Pose};
 
 /// Triangles of one `PointsPolygons`: renderers take a mesh whole.
 const MOST_TRIANGLES: usize = 200_000;
@@ -18,13 +19,13 @@ const MOST_TRIANGLES: usize = 200_000;
 /// named by `handle`.
 pub(super) fn write_object(
     object: &Object,
-    surface: &str,
+    material: &Material,
     handle: u32,
     options: RibOptions,
     out: &mut impl Write,
 ) -> io::Result<()> {
     writeln!(out, "AttributeBegin\nAttribute \"identifier\" \"string name\" [\"{}\"]", plain(&object.name))?;
-    writeln!(out, "{surface}")?;
+    writeln!(out, "{}", surface(object, material))?;
     if !object.shadow && options.shadows == RibShadows::Rays {
         writeln!(out, "Attribute \"visibility\" \"int transmission\" [0]")?;
     }
@@ -41,11 +42,11 @@ pub(super) fn write_object(
     }
     let poses: &[Pose] = if let Body::Posed(_, poses) = &object.body { poses } else { &[] };
     if object.instances.len() == 1 && poses.is_empty() {
-        write_primitives(object, object.instances[0].at, out)?;
+        write_primitives(object, material, object.instances[0].at, out)?;
         return writeln!(out, "AttributeEnd");
     }
     writeln!(out, "ObjectBegin {handle}")?;
-    write_primitives(object, DVec3::ZERO, out)?;
+    write_primitives(object, material, DVec3::ZERO, out)?;
     writeln!(out, "ObjectEnd")?;
     let posed: Vec<Option<&Pose>> = if poses.is_empty() { vec![None] } else { poses.iter().map(Some).collect() };
     for place in &object.instances {
@@ -66,65 +67,14 @@ fn placed(place: &Instance, pose: Option<&Pose>, digits: Digits) -> String {
 }
 
 /// Writes what an object is made of, moved by `offset`.
-fn write_primitives(object: &Object, offset: DVec3, out: &mut impl Write) -> io::Result<()> {
+fn write_primitives(object: &Object, material: &Material, offset: DVec3, out: &mut impl Write) -> io::Result<()> {
     match &object.body {
-        Body::Limbs(limbs) => write_limbs(limbs, offset, object.digits, out),
+        Body::Limbs(limbs) => write_limbs(limbs, offset, object.digits, material.pattern.as_ref(), out),
         Body::Mesh(mesh) | Body::Posed(mesh, _) => {
             let mut pieces = mesh.triangles.chunks(MOST_TRIANGLES);
             pieces.try_for_each(|triangles| write_mesh(mesh, triangles, offset, object.digits, out))
         }
     }
-}
-
-fn write_limbs(limbs: &Limbs, offset: DVec3, digits: Digits, out: &mut impl Write) -> io::Result<()> {
-    let scale = digits.scale();
-    let mut text: Vec<u8> = Vec::with_capacity(BUFFER + 512);
-    let length = |text: &mut Vec<u8>, x: f64| {
-        push_number(text, x, digits, scale);
-        text.push(b' ');
-    };
-    for ball in &limbs.balls {
-        if digits.round(ball.radius) <= 0.0 {
-            continue;
-        }
-        text.extend_from_slice(b"TransformBegin Translate ");
-        (ball.centre + offset).to_array().iter().for_each(|&c| length(&mut text, c));
-        text.extend_from_slice(b"Sphere ");
-        [ball.radius, -ball.radius, ball.radius].iter().for_each(|&c| length(&mut text, c));
-        text.extend_from_slice(b"360 TransformEnd\n");
-        flush_at(&mut text, out, BUFFER)?;
-    }
-    for &[a, b] in &limbs.segments {
-        let (a, b) = (&limbs.balls[a as usize], &limbs.balls[b as usize]);
-        let Some(f) = frustum(a.centre, a.radius, b.centre, b.radius) else { continue };
-        let (ra, rb, long) = (digits.round(f.ra), digits.round(f.rb), digits.round((f.b - f.a).length()));
-        if long <= 0.0 || (ra <= 0.0 && rb <= 0.0) {
-            continue;
-        }
-        let Some(w) = (f.b - f.a).try_normalize() else { continue };
-        // A whole cone has its apex at its far end.
-        let (foot, w, ra, rb) = if ra <= 0.0 { (f.b, -w, rb, ra) } else { (f.a, w, ra, rb) };
-        let u = w.any_orthonormal_vector();
-        text.extend_from_slice(b"TransformBegin ConcatTransform [");
-        for axis in [u, w.cross(u), w] {
-            for c in axis.to_array() {
-                push_number(&mut text, c, MATRIX, MATRIX.scale());
-                text.push(b' ');
-            }
-            text.extend_from_slice(b"0 ");
-        }
-        (foot + offset).to_array().iter().for_each(|&c| length(&mut text, c));
-        if rb > 0.0 {
-            text.extend_from_slice(b"1] Hyperboloid ");
-            [ra, 0.0, 0.0, rb, 0.0, long].iter().for_each(|&c| length(&mut text, c));
-        } else {
-            text.extend_from_slice(b"1] Cone ");
-            [long, ra].iter().for_each(|&c| length(&mut text, c));
-        }
-        text.extend_from_slice(b"360 TransformEnd\n");
-        flush_at(&mut text, out, BUFFER)?;
-    }
-    flush_at(&mut text, out, 1)
 }
 
 /// Writes some triangles of a mesh with the corners that they have.

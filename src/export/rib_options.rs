@@ -1,14 +1,14 @@
 //! How a RIB scene is written.
 
-/// How a RIB scene has its shadows: renderers differ in that.
+/// How a RIB scene has its shadows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RibShadows {
-    /// None: what every renderer takes.
-    #[default]
+    /// None.
     None,
-    /// Traced by the light `raydistant`, which Pixie has.
+    /// Traced by the light `raydistant`, which Pixie has: sharper.
     Rays,
-    /// Maps that the scene makes first, read by the light `shadowdistant`, which Aqsis has.
+    /// Maps that the scene makes first, read by the light `shadowdistant`: what Pixie and Aqsis both take.
+    #[default]
     Maps,
 }
 
@@ -19,4 +19,7 @@ pub struct RibOptions {
     pub shadows: RibShadows,
     /// Leave thorns to the displacement shader `thorns`, which must be compiled; otherwise they are cones.
     pub displace: bool,
+    /// Write the picture in linear light with 16 bits a channel, for whoever makes it one for the screen; otherwise it has 8, bent by
+    /// a gamma of 2.2.
+    pub linear: bool,
 }

@@ -41,7 +41,7 @@ pub(super) fn sheets(model: &Model, size: [u32; 2], digits: Digits) -> Vec<Sheet
             |(from, way): (DVec3, DVec3)| from + way * ((wall - depth(camera, from)) / depth(camera, camera.at + way));
         // Below the horizon the sky goes on as it is there.
         let seen = |way: DVec3| if way.z < 0.0 { way.with_z(0.0).normalize_or(way) } else { way };
-        rays.into_iter().for_each(|(from, way)| grid.corner(place((from, way)), model.sky.colour(seen(way))));
+        grid.polygon(rays.map(|(from, way)| (place((from, way)), model.sky.colour(seen(way)))).to_vec());
     }
     let surface = "Surface \"constant\"".to_owned();
     let sky = Sheet { name: "sky", surface, body: grid.text(digits), far: wall };
@@ -65,19 +65,44 @@ fn ground(model: &Model, size: [u32; 2], digits: Digits) -> Option<Sheet> {
     let lit = |i: usize| (material.ambient + material.diffuse * light[i]).max(1e-3);
     let mut grid = Grid::default();
     let mut far: f64 = 0.0;
+    // It fades into the horizon, as POV-Ray's does: so bright that under this light it looks so.
+    let shown = |p: DVec3| {
+        let fade = (1.0 - p.truncate().length() / ground.reach) / FADE;
+        let share = if ground.radius.is_some() { 1.0 } else { fade.clamp(0.0, 1.0) };
+        (p, Colour([0, 1, 2].map(|i| own[i] * share + horizon[i] / lit(i) * (1.0 - share))))
+    };
     for square in squares(SQUARES, size) {
-        let [Some(a), Some(b), Some(c), Some(d)] = square.map(meets) else { continue };
-        for p in [a, b, c, d] {
-            // It fades into the horizon, as POV-Ray's does: so bright that under this light it looks so.
-            let fade = (1.0 - p.truncate().length() / ground.reach) / FADE;
-            let share = if ground.radius.is_some() { 1.0 } else { fade.clamp(0.0, 1.0) };
-            grid.corner(p, Colour([0, 1, 2].map(|i| own[i] * share + horizon[i] / lit(i) * (1.0 - share))));
-            far = far.max(depth(camera, p));
-        }
+        let corners: Vec<(DVec3, Colour)> = clip(square, meets).into_iter().map(shown).collect();
+        far = corners.iter().map(|(p, _)| depth(camera, *p)).fold(far, f64::max);
+        grid.polygon(corners);
     }
     let [ka, kd] = [material.ambient, material.diffuse].map(|x| number(x, PLAIN));
     let surface = format!("Surface \"matte\" \"float Ka\" [{ka}] \"float Kd\" [{kd}]");
-    (!grid.points.is_empty()).then(|| Sheet { name: "ground", surface, body: grid.text(digits), far })
+    (!grid.corners.is_empty()).then(|| Sheet { name: "ground", surface, body: grid.text(digits), far })
+}
+
+/// The part of a square of the picture whose points `meets` knows in the world, as they are there: cut off where it begins to.
+fn clip(square: [[f64; 2]; 4], meets: impl Fn([f64; 2]) -> Option<DVec3>) -> Vec<DVec3> {
+    let mut found = Vec::new();
+    for (i, from) in square.into_iter().enumerate() {
+        let to = square[(i + 1) % 4];
+        let ends = [from, to].map(&meets);
+        found.extend(ends[0]);
+        if let [Some(p), None] | [None, Some(p)] = ends {
+            let [mut within, mut without] = if ends[0].is_some() { [from, to] } else { [to, from] };
+            let mut last = p;
+            // To a millionth of the square.
+            for _ in 0..20 {
+                let middle = [0, 1].map(|axis| (within[axis] + without[axis]) * 0.5);
+                match meets(middle) {
+                    Some(p) => (within, last) = (middle, p),
+                    None => without = middle,
+                }
+            }
+            found.push(last);
+        }
+    }
+    found
 }
 
 /// Distance along the view.
@@ -109,26 +134,30 @@ fn light_above(model: &Model) -> [f64; 3] {
     sum
 }
 
-/// Squares with a colour at each corner.
+/// Polygons with a colour at each corner.
 #[derive(Default)]
 struct Grid {
-    points: Vec<DVec3>,
-    colours: Vec<Colour>,
+    counts: Vec<usize>,
+    corners: Vec<(DVec3, Colour)>,
 }
 
 impl Grid {
-    fn corner(&mut self, p: DVec3, colour: Colour) {
-        self.points.push(p);
-        self.colours.push(colour);
+    /// Adds one, if it is one.
+    fn polygon(&mut self, corners: Vec<(DVec3, Colour)>) {
+        if corners.len() >= 3 {
+            self.counts.push(corners.len());
+            self.corners.extend(corners);
+        }
     }
 
     fn text(&self, digits: Digits) -> String {
-        let counts = vec!["4"; self.points.len() / 4].join(" ");
-        let corners: Vec<String> = (0..self.points.len()).map(|i| i.to_string()).collect();
-        let points: Vec<String> = self.points.iter().map(|&p| triple(p, digits)).collect();
-        let colours: Vec<String> = self.colours.iter().map(|&c| colour(c)).collect();
+        let counts: Vec<String> = self.counts.iter().map(usize::to_string).collect();
+        let corners: Vec<String> = (0..self.corners.len()).map(|i| i.to_string()).collect();
+        let points: Vec<String> = self.corners.iter().map(|&(p, _)| triple(p, digits)).collect();
+        let colours: Vec<String> = self.corners.iter().map(|&(_, c)| colour(c)).collect();
         format!(
-            "PointsPolygons [{counts}]\n[{}]\n\"P\" [{}]\n\"Cs\" [{}]",
+            "PointsPolygons [{}]\n[{}]\n\"P\" [{}]\n\"Cs\" [{}]",
+            counts.join(" "),
             corners.join(" "),
             points.join("\n"),
             colours.join("\n")

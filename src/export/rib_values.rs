@@ -14,6 +14,9 @@ use crate::model::{Camera, Digits, Light, Model, Projection};
 
 /// Pixels along a side of a shadow map.
 const MAP: u32 = 2048;
+/// What is nearer casts no shadow, as a share of the extent: traced, and by a map, which knows depths at its pixels alone.
+const RAY_BIAS: f64 = 0.002;
+const MAP_BIAS: f64 = 0.005;
 
 /// What the template may ask for.
 #[derive(Serialize)]
@@ -30,8 +33,10 @@ pub(super) struct RibValues {
     maps: Vec<MapValues>,
     /// Sky and ground.
     sheets: Vec<Sheet>,
-    /// Are shadows traced?
-    rays: bool,
+    /// Where shadows are traced: what is nearer casts none.
+    ray_bias: Option<String>,
+    /// Linear light with 16 bits a channel?
+    linear: bool,
     /// What the maps show: the end of the name of an archive.
     casters: &'static str,
 }
@@ -52,6 +57,10 @@ struct LightValues {
     from: String,
     to: Option<String>,
     map: Option<String>,
+    /// Distance over which it falls off, where it does so; 0 where it does not.
+    fade: Option<String>,
+    /// Are its shadows traced?
+    is_traced: bool,
 }
 
 #[derive(Serialize)]
@@ -62,6 +71,8 @@ struct MapValues {
     window: String,
     clipping: String,
     matrix: String,
+    /// Moves what it shows away from its light, so that nothing is in its own shadow.
+    bias: String,
 }
 
 /// The values of `model`, whose files are called `name`.
@@ -73,8 +84,11 @@ pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin,
     let stem = plain(name);
     let mut lights = Vec::new();
     let mut maps = Vec::new();
+    // From anywhere that is seen, past everything.
+    let seen = sheets.iter().map(|sheet| sheet.far).fold(extent, f64::max);
+    let world = World { bounds, digits, reach: 2.0 * (seen + bounds.size().length().max(extent)) };
     for (i, light) in model.lights.iter().enumerate() {
-        let (values, map) = light_values(&stem, i, light, bounds, digits, options.shadows);
+        let (values, map) = light_values(&stem, i, light, &world, options.shadows);
         lights.push(values);
         maps.extend(map);
     }
@@ -89,7 +103,8 @@ pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin,
         lights,
         maps,
         sheets,
-        rays: options.shadows == RibShadows::Rays,
+        ray_bias: (options.shadows == RibShadows::Rays).then(|| number(extent * RAY_BIAS, digits)),
+        linear: options.linear,
         casters: if has_casters(model, options) { "casters" } else { "archive" },
         stem,
     }
@@ -119,15 +134,23 @@ fn camera_values(camera: &Camera, bounds: Bounds, extent: f64, sheets: &[Sheet],
     }
 }
 
+/// What lights need to know of the scene.
+struct World {
+    bounds: Bounds,
+    digits: Digits,
+    /// No shadow is longer.
+    reach: f64,
+}
+
 /// A light, and the shadow map that it needs.
 fn light_values(
     stem: &str,
     i: usize,
     light: &Light,
-    bounds: Bounds,
-    digits: Digits,
+    world: &World,
     shadows: RibShadows,
 ) -> (LightValues, Option<MapValues>) {
+    let World { bounds, digits, reach } = *world;
     match *light {
         Light::Sun { towards, colour: c, shadow, .. } => {
             let needs_map = shadow && shadows == RibShadows::Maps && !bounds.is_empty();
@@ -140,23 +163,25 @@ fn light_values(
                 },
                 intensity: "1".to_owned(),
                 colour: colour(c),
-                from: triple(towards, PLAIN),
+                // Pixie looks for what is in the way as far as from here to there.
+                from: triple(towards * reach, digits),
                 to: Some("0 0 0".to_owned()),
                 map: map.as_ref().map(|map| format!("{}.shad", map.stem)),
+                fade: None,
+                is_traced: false,
             };
             (light, map)
         }
-        Light::Point { at, colour: c, fade, .. } => {
-            // Theirs fall off with the square of the distance from 1 on: right far away; without a falloff, right in the
-            // middle of the scene.
-            let reach = fade.map_or((at - bounds.centre()).length(), |fade| fade * libm::sqrt(2.0));
+        Light::Point { at, colour: c, fade, shadow } => {
             let light = LightValues {
-                shader: "pointlight",
-                intensity: number(reach * reach, PLAIN),
+                shader: "fadepoint",
+                intensity: "1".to_owned(),
                 colour: colour(c),
                 from: triple(at, digits),
                 to: None,
                 map: None,
+                fade: Some(number(fade.unwrap_or(0.0), digits)),
+                is_traced: shadow && shadows == RibShadows::Rays,
             };
             (light, None)
         }
@@ -183,5 +208,6 @@ fn map_values(stem: &str, i: usize, towards: DVec3, bounds: Bounds, digits: Digi
         window: format!("-{half} {half} -{half} {half}"),
         clipping: format!("{} {}", number(radius * 0.9, digits), number(radius * 3.1, digits)),
         matrix: to_camera(eye, [right, right.cross(-towards), -towards], digits),
+        bias: triple(-towards * (bounds.size().max_element() * MAP_BIAS), digits),
     }
 }

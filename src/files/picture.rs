@@ -4,7 +4,7 @@ use std::io::{self, Cursor, Write};
 
 use image::{DynamicImage, ImageBuffer, ImageReader, Limits};
 
-use crate::math::from_srgb;
+use crate::math::{from_srgb, to_srgb};
 use crate::raster::{Channel, Grey, Layers};
 
 /// Most pixels along a side of a picture that is decoded.
@@ -97,6 +97,21 @@ pub fn decode_png(bytes: &[u8]) -> Result<Rgba, PictureError> {
     let picture = decode(bytes)?.into_rgba8();
     let (width, height) = picture.dimensions();
     Ok(Rgba { width, height, bytes: picture.into_raw() })
+}
+
+/// Decodes a picture of linear light, of 16 bits a channel, to one for the screen; alpha is as it was.
+///
+/// # Errors
+/// [`PictureError`].
+pub fn decode_light(bytes: &[u8]) -> Result<Rgba, PictureError> {
+    let picture = decode(bytes)?.into_rgba16();
+    let (width, height) = picture.dimensions();
+    let byte = |x: f64| libm::round(x * 255.0) as u8;
+    let pixel = |p: &image::Rgba<u16>| {
+        let [r, g, b, a] = p.0.map(|x| f64::from(x) / 65535.0);
+        [byte(to_srgb(r)), byte(to_srgb(g)), byte(to_srgb(b)), byte(a)]
+    };
+    Ok(Rgba { width, height, bytes: picture.pixels().flat_map(pixel).collect() })
 }
 
 /// Decodes a PNG or JPEG picture to channels `R G B A` in linear light, premultiplied, with its texts.

@@ -29,6 +29,10 @@ const NET: [Wave; 4] = [
 const FISSURE: f64 = 0.9;
 
 impl Figure for Bark {
+    fn name(&self) -> &'static str {
+        "bark"
+    }
+
     fn colour(&self) -> Colour {
         self.colour
     }

@@ -5,6 +5,9 @@ use crate::math::Colour;
 
 /// A kind of pattern.
 pub trait Figure {
+    /// Its name, as scenes have it and shaders are called.
+    fn name(&self) -> &'static str;
+
     /// The colour drawn over the material's own.
     fn colour(&self) -> Colour;
 

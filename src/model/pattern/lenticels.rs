@@ -29,6 +29,10 @@ const SHARP: f64 = 2.5;
 const LEAST: f64 = 1.5;
 
 impl Figure for Lenticels {
+    fn name(&self) -> &'static str {
+        "lenticels"
+    }
+
     fn colour(&self) -> Colour {
         self.colour
     }

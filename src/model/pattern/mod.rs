@@ -31,6 +31,9 @@ pub enum Pattern {
 }
 
 impl Pattern {
+    /// The names of all.
+    pub const NAMES: [&'static str; 3] = ["bark", "moss", "lenticels"];
+
     /// What draws it: the one row of each pattern.
     #[must_use]
     pub fn figure(&self) -> &dyn Figure {

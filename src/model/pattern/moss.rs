@@ -30,6 +30,10 @@ const UPPER: f64 = 0.9;
 const LEAST: f64 = 0.45;
 
 impl Figure for Moss {
+    fn name(&self) -> &'static str {
+        "moss"
+    }
+
     fn colour(&self) -> Colour {
         self.colour
     }

@@ -167,6 +167,7 @@ pub fn read(text: &str, archive: &str) -> World {
     let mut stack: Vec<(State, &str)> = Vec::new();
     let mut retained: HashMap<u64, Vec<Primitive>> = HashMap::new();
     let mut recording: Option<(u64, State)> = None;
+    let mut thirds: Vec<[Vec3; 2]> = Vec::new();
     let mut queue = tokens(text);
     queue.reverse();
     assert!(text.starts_with("##RenderMan RIB-Structure 1.1") && text.contains("\nversion 3.03\n"));
@@ -218,7 +219,8 @@ pub fn read(text: &str, archive: &str) -> World {
             }
             "Projection" => {
                 world.projection = given.texts[0].clone();
-                world.fov = given.named.get("float fov").map_or(0.0, |fov| fov[0]);
+                // Pixie refuses a type written before it.
+                world.fov = given.named.get("fov").map_or(0.0, |fov| fov[0]);
             }
             "ScreenWindow" => world.window = all(),
             "Clipping" => world.clipping = [all()[0], all()[1]],
@@ -255,9 +257,27 @@ pub fn read(text: &str, archive: &str) -> World {
             }
             "Hyperboloid" => {
                 let n = all();
-                assert!(n.len() == 7 && n[6] == 360.0 && n[1] == 0.0 && n[2] == 0.0 && n[4] == 0.0, "{n:?}");
-                assert!(n[0] > 0.0 && n[3] > 0.0 && n[5] > 0.0, "{n:?}");
-                made = Some(Primitive::Frustum { a: [0.0; 3], ra: n[0], b: [0.0, 0.0, n[5]], rb: n[3] });
+                assert!(n.len() == 7 && n[6] == 120.0, "{n:?}");
+                let ends = [[n[0], n[1], n[2]], [n[3], n[4], n[5]]];
+                let [first, second] = ends.map(|[x, y, _]| length([x, y, 0.0]));
+                assert!(first > 0.0 && first <= second * 1.001, "Pixie wants the narrower end first: {n:?}");
+                thirds.push(ends);
+                if let [one, two, three] = thirds[..] {
+                    // Each is the one before turned by 120 degrees.
+                    for (before, after) in [(one, two), (two, three)] {
+                        for (b, a) in before.iter().zip(&after) {
+                            let turned = [-0.5 * b[0] - 0.75_f64.sqrt() * b[1], 0.75_f64.sqrt() * b[0] - 0.5 * b[1], b[2]];
+                            let size = length(*b);
+                            assert!(turned.iter().zip(a).all(|(x, y)| (x - y).abs() < 1e-3 * size + 1e-5), "{b:?} {a:?}");
+                        }
+                    }
+                    thirds.clear();
+                    // Its foot is where z is 0.
+                    let [(za, ra), (zb, rb)] =
+                        if one[0][2] == 0.0 { [(0.0, first), (one[1][2], second)] } else { [(0.0, second), (one[0][2], first)] };
+                    assert!(zb > 0.0, "{n:?}");
+                    made = Some(Primitive::Frustum { a: [0.0, 0.0, za], ra, b: [0.0, 0.0, zb], rb });
+                }
             }
             "Cone" => {
                 let n = all();
@@ -282,6 +302,11 @@ pub fn read(text: &str, archive: &str) -> World {
                 assert!(normals.is_empty() || normals.len() == points.len());
                 assert!(given.named.get("Cs").is_none_or(|list| list.len() == points.len() * 3));
                 made = Some(Primitive::Polygons { points, normals, faces });
+            }
+            "TextureCoordinates" => {
+                let n = all();
+                assert!(n.len() == 8 && n.chunks(2).all(|st| st == [n[0], 0.0]), "{n:?}");
+                assert!(n[0] >= 0.0 || n[0] == -1.0, "{n:?}");
             }
             "Displacement" | "version" | "Option" | "Display" | "Quantize" | "Exposure" | "PixelSamples"
             | "PixelFilter" | "ShadingRate" | "MakeShadow" => {}

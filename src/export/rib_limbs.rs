@@ -1,0 +1,146 @@
+//! Limbs in RIB: spheres and hyperboloids.
+
+use std::io::{self, Write};
+
+use super::buffer::{BUFFER, flush_at};
+use super::decimal::push_plain as push_number;
+use super::rib_text::MATRIX;
+use crate::geom::{Frustum, frustum};
+use crate::math::DVec3;
+use crate::model::{Ball, Digits, LimbFrame, Limbs, Pattern, limb_frames};
+
+/// What turns the first third of a tube into the others: cosine and sine of 0, 120 and 240 degrees. A tube that is swept at once is
+/// diced so coarsely, where it is thin, that it all but vanishes.
+const THIRDS: [[f64; 2]; 3] = [[1.0, 0.0], [-0.5, HALF_ROOT_3], [-0.5, -HALF_ROOT_3]];
+const HALF_ROOT_3: f64 = 0.866_025_403_784_438_6;
+
+/// Writes `limbs`, moved by `offset`. With a pattern each stands along z of its own space, x towards its upper side, and its texture
+/// coordinate s says how far along the limb that space begins: -1 where the limb is too thin for the pattern. (Pixie cannot
+/// retain quadrics with primitive variables; it keeps texture coordinates.)
+pub(super) fn write_limbs(
+    limbs: &Limbs,
+    offset: DVec3,
+    digits: Digits,
+    pattern: Option<&Pattern>,
+    out: &mut impl Write,
+) -> io::Result<()> {
+    let frames = pattern.map(|pattern| (limb_frames(limbs), pattern.figure().least_radius()));
+    let laid = |i: u32, ball: &Ball| {
+        let (frames, least) = frames.as_ref()?;
+        (ball.radius >= *least).then(|| frames[i as usize])
+    };
+    let mut text = Text { bytes: Vec::with_capacity(BUFFER + 1024), digits, along: frames.is_some().then_some(f64::NAN) };
+    for (i, ball) in (0..).zip(&limbs.balls) {
+        if digits.round(ball.radius) > 0.0 {
+            text.ball(ball, offset, laid(i, ball));
+            flush_at(&mut text.bytes, out, BUFFER)?;
+        }
+    }
+    for &[from, to] in &limbs.segments {
+        let (a, b) = (&limbs.balls[from as usize], &limbs.balls[to as usize]);
+        if let Some(frustum) = frustum(a.centre, a.radius, b.centre, b.radius) {
+            text.tube(&frustum, offset, laid(to, b));
+            flush_at(&mut text.bytes, out, BUFFER)?;
+        }
+    }
+    flush_at(&mut text.bytes, out, 1)
+}
+
+/// What is written, on its way.
+struct Text {
+    bytes: Vec<u8>,
+    digits: Digits,
+    /// The texture coordinate s as it was last set, where there is a pattern.
+    along: Option<f64>,
+}
+
+impl Text {
+    fn word(&mut self, word: &str) {
+        self.bytes.extend_from_slice(word.as_bytes());
+    }
+
+    fn lengths(&mut self, lengths: &[f64]) {
+        for &x in lengths {
+            push_number(&mut self.bytes, x, self.digits, self.digits.scale());
+            self.bytes.push(b' ');
+        }
+    }
+
+    /// Sets s of all corners.
+    fn begin_along(&mut self, s: f64) {
+        if self.along != Some(s) {
+            self.along = Some(s);
+            self.word("TextureCoordinates ");
+            (0..4).for_each(|_| self.lengths(&[s, 0.0]));
+            self.word("\n");
+        }
+    }
+
+    /// A limb's own space: its axes, its origin.
+    fn begin_space(&mut self, axes: [DVec3; 3], origin: DVec3) {
+        self.word("TransformBegin ConcatTransform [");
+        for axis in axes {
+            for c in axis.to_array() {
+                push_number(&mut self.bytes, c, MATRIX, MATRIX.scale());
+                self.bytes.push(b' ');
+            }
+            self.word("0 ");
+        }
+        self.lengths(&origin.to_array());
+        self.word("1] ");
+    }
+
+    fn ball(&mut self, ball: &Ball, offset: DVec3, laid: Option<LimbFrame>) {
+        let centre = ball.centre + offset;
+        if self.along.is_some() {
+            self.begin_along(laid.map_or(-1.0, |frame| frame.along));
+        }
+        if let Some(LimbFrame { axes: [x, z, y], .. }) = laid {
+            self.begin_space([x, y, z], centre);
+        } else {
+            self.word("TransformBegin Translate ");
+            self.lengths(&centre.to_array());
+        }
+        self.word("Sphere ");
+        self.lengths(&[ball.radius, -ball.radius, ball.radius]);
+        self.word("360 TransformEnd\n");
+    }
+
+    fn tube(&mut self, f: &Frustum, offset: DVec3, laid: Option<LimbFrame>) {
+        let Some(w) = (f.b - f.a).try_normalize() else { return };
+        let [ra, rb, long] = [f.ra, f.rb, (f.b - f.a).length()].map(|x| self.digits.round(x));
+        if long <= 0.0 || (ra <= 0.0 && rb <= 0.0) {
+            return;
+        }
+        // A whole cone has its apex at its far end.
+        let is_turned = ra <= 0.0;
+        let laid = laid.filter(|_| !is_turned);
+        let (foot, w, ra, rb) = if is_turned { (f.b, -w, rb, ra) } else { (f.a, w, ra, rb) };
+        let u = laid.map_or(w.any_orthonormal_vector(), |frame| frame.axes[0]);
+        if self.along.is_some() {
+            self.begin_along(laid.map_or(-1.0, |frame| frame.local(f.a).y));
+        }
+        self.begin_space([u, w.cross(u), w], foot + offset);
+        if rb > 0.0 {
+            self.hyperboloid([ra, rb], long);
+        } else {
+            self.word("Cone ");
+            self.lengths(&[long, ra]);
+            self.word("360 ");
+        }
+        self.word("TransformEnd\n");
+    }
+
+    /// A tube along z from 0, in thirds. Pixie's rays miss one whose wider end is written first, where its radii are nearly equal:
+    /// they meet the box around it.
+    fn hyperboloid(&mut self, [ra, rb]: [f64; 2], long: f64) {
+        let [first, second] = if ra <= rb { [(ra, 0.0), (rb, long)] } else { [(rb, long), (ra, 0.0)] };
+        for [cos, sin] in THIRDS {
+            self.word("Hyperboloid ");
+            for (r, z) in [first, second] {
+                self.lengths(&[r * cos, r * sin, z]);
+            }
+            self.word("120 ");
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Surfaces of RIB: a colour, and a standard shader or that of a pattern.
+
+use super::decimal::plain_number as number;
+use super::rib_text::{PLAIN, colour};
+use crate::math::Colour;
+use crate::model::{Body, Material, Object};
+
+/// Standard shaders have highlights of exponent 8 / roughness (Aqsis) or 10 / roughness (Pixie), POV-Ray of 1 / roughness.
+const EXPONENT: f64 = 9.0;
+/// A highlight after Phong is as wide as one after Blinn with this many times its exponent.
+const PHONG: f64 = 4.0;
+
+/// The surface of an object.
+pub(super) fn surface(object: &Object, m: &Material) -> String {
+    let is_laid = matches!(object.body, Body::Limbs(_));
+    let Some(pattern) = m.pattern.filter(|_| is_laid) else { return plain(m) };
+    let figure = pattern.figure();
+    let [size, mean] = [figure.size(), figure.mean()].map(|x| number(x, PLAIN));
+    format!(
+        "Color [{}]\nSurface \"{}\" {} \"float size\" [{size}] \"float mean\" [{mean}] \"color over\" [{}]",
+        colour(m.colour),
+        figure.name(),
+        light(m).join(" "),
+        colour(figure.colour()),
+    )
+}
+
+fn plain(m: &Material) -> String {
+    let Colour(c) = m.mean_colour();
+    if m.diffuse == 0.0 && m.ambient == 0.0 {
+        return format!("Color [{}]\nSurface \"constant\"", colour(Colour(c.map(|c| c * m.emission))));
+    }
+    let shader = if shine(m) > 0.0 { "plastic" } else { "matte" };
+    format!("Color [{}]\nSurface \"{shader}\" {}", colour(Colour(c)), light(m).join(" "))
+}
+
+fn shine(m: &Material) -> f64 {
+    m.specular.max(m.phong)
+}
+
+/// The parameters that say what becomes of light.
+fn light(m: &Material) -> Vec<String> {
+    // The ambient light is 1: light of its own adds to it.
+    let mut all = vec![("Ka", m.ambient + m.emission), ("Kd", m.diffuse)];
+    if shine(m) > 0.0 {
+        let exponent = if m.specular > 0.0 { 1.0 / m.roughness } else { PHONG * m.phong_size };
+        all.extend([("Ks", shine(m)), ("roughness", EXPONENT / exponent)]);
+    }
+    all.into_iter().map(|(name, x)| format!("\"float {name}\" [{}]", number(x, PLAIN))).collect()
+}
