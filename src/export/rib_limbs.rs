@@ -29,7 +29,8 @@ pub(super) fn write_limbs(
         let (frames, least) = frames.as_ref()?;
         (ball.radius >= *least).then(|| frames[i as usize])
     };
-    let mut text = Text { bytes: Vec::with_capacity(BUFFER + 1024), digits, along: frames.is_some().then_some(f64::NAN) };
+    let mut text =
+        Text { bytes: Vec::with_capacity(BUFFER + 1024), digits, along: frames.is_some().then_some(f64::NAN) };
     for (i, ball) in (0..).zip(&limbs.balls) {
         if digits.round(ball.radius) > 0.0 {
             text.ball(ball, offset, laid(i, ball));
@@ -62,6 +63,15 @@ impl Text {
     fn lengths(&mut self, lengths: &[f64]) {
         for &x in lengths {
             push_number(&mut self.bytes, x, self.digits, self.digits.scale());
+            self.bytes.push(b' ');
+        }
+    }
+
+    /// Coordinates around an axis: finer, since what they differ by counts.
+    fn around(&mut self, lengths: &[f64]) {
+        let finer = Digits(self.digits.0 + 2);
+        for &x in lengths {
+            push_number(&mut self.bytes, x, finer, finer.scale());
             self.bytes.push(b' ');
         }
     }
@@ -131,14 +141,16 @@ impl Text {
         self.word("TransformEnd\n");
     }
 
-    /// A tube along z from 0, in thirds. Pixie's rays miss one whose wider end is written first, where its radii are nearly equal:
-    /// they meet the box around it.
+    /// A tube along z from 0, in thirds. Pixie's rays meet the box around one whose wider end is written first or whose radii are
+    /// equal: the narrower end goes first, and the other is wider by a digit at least.
     fn hyperboloid(&mut self, [ra, rb]: [f64; 2], long: f64) {
-        let [first, second] = if ra <= rb { [(ra, 0.0), (rb, long)] } else { [(rb, long), (ra, 0.0)] };
+        let [(narrow, z), (wide, other)] = if ra <= rb { [(ra, 0.0), (rb, long)] } else { [(rb, long), (ra, 0.0)] };
+        let wide = wide.max(narrow + 1.0 / self.digits.scale());
         for [cos, sin] in THIRDS {
             self.word("Hyperboloid ");
-            for (r, z) in [first, second] {
-                self.lengths(&[r * cos, r * sin, z]);
+            for (r, z) in [(narrow, z), (wide, other)] {
+                self.around(&[r * cos, r * sin]);
+                self.lengths(&[z]);
             }
             self.word("120 ");
         }

@@ -33,6 +33,24 @@ pub(super) fn command(program: &str) -> io::Result<Command> {
     Ok(command)
 }
 
+/// The stack that Pixie takes: it frees what it has read by a call for each primitive within that for the one before, which takes
+/// eight megabytes for half a million.
+const STACK: u64 = 1 << 30;
+
+/// Children may have a stack as deep as Pixie wants.
+pub(super) fn deepen_stack() {
+    #[cfg(unix)]
+    {
+        use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
+        let Rlimit { current, maximum } = getrlimit(Resource::Stack);
+        let wanted = maximum.unwrap_or(STACK).min(STACK);
+        if current.is_some_and(|current| current < wanted) {
+            // Without it, most scenes go as well.
+            let _ = setrlimit(Resource::Stack, Rlimit { current: Some(wanted), maximum });
+        }
+    }
+}
+
 /// Where `program` is on the PATH.
 fn find(program: &str) -> Option<PathBuf> {
     let file = format!("{program}{}", std::env::consts::EXE_SUFFIX);

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Stdio;
 use std::sync::mpsc::RecvTimeoutError;
 
-use super::child::{POLL, Watched, command, listen};
+use super::child::{POLL, Watched, command, deepen_stack, listen};
 use crate::math::{Cancelled, Progress};
 
 /// Lines of a renderer's output in an error message.
@@ -81,6 +81,7 @@ impl RibRenderer {
     /// # Errors
     /// [`RibError`].
     pub fn render(self, folder: &Path, scene: &str, picture: &str, progress: &Progress) -> Result<(), RibError> {
+        deepen_stack();
         let asked = match self {
             Self::Pixie => "-p",
             Self::Aqsis => "-Progress",

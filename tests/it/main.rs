@@ -18,6 +18,7 @@ mod outputs;
 mod povray;
 mod preview;
 mod readme;
+mod renderers;
 mod rib;
 mod scenes;
 mod scipy;

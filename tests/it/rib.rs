@@ -231,7 +231,7 @@ fn the_command_writes_scene_and_archive() {
         let args = [&["export", "elm", "--to", "rib"], &few[..], extra].concat();
         succeed_in(folder.path(), &args)
     };
-    assert_eq!(export(&[]), "./elm.archive.rib\n./elm.rib\n");
+    assert_eq!(export(&[]), "./elm.archive.rib\n./bark.sl\n./elm.rib\n");
     let plain = std::fs::read(folder.path().join("elm.archive.rib")).unwrap();
     let scene = std::fs::read_to_string(folder.path().join("elm.rib")).unwrap();
     read(&scene, &text(&plain));
@@ -242,7 +242,7 @@ fn the_command_writes_scene_and_archive() {
     std::io::Read::read_to_end(&mut flate2::read::GzDecoder::new(&packed[..]), &mut unpacked).unwrap();
     assert_eq!(unpacked, plain);
     std::fs::write(folder.path().join("elm.rib"), scene.replace("ShadingRate 0.5", "ShadingRate 1")).unwrap();
-    assert_eq!(export(&[]), "./elm.archive.rib\n");
+    assert_eq!(export(&[]), "./elm.archive.rib\n./bark.sl\n");
     let output = run_in(folder.path(), &["export", "elm", "--to", "pov", "--gzip"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stderr).contains("--gzip is for RIB"));

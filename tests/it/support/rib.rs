@@ -266,15 +266,22 @@ pub fn read(text: &str, archive: &str) -> World {
                     // Each is the one before turned by 120 degrees.
                     for (before, after) in [(one, two), (two, three)] {
                         for (b, a) in before.iter().zip(&after) {
-                            let turned = [-0.5 * b[0] - 0.75_f64.sqrt() * b[1], 0.75_f64.sqrt() * b[0] - 0.5 * b[1], b[2]];
+                            let turned =
+                                [-0.5 * b[0] - 0.75_f64.sqrt() * b[1], 0.75_f64.sqrt() * b[0] - 0.5 * b[1], b[2]];
                             let size = length(*b);
-                            assert!(turned.iter().zip(a).all(|(x, y)| (x - y).abs() < 1e-3 * size + 1e-5), "{b:?} {a:?}");
+                            assert!(
+                                turned.iter().zip(a).all(|(x, y)| (x - y).abs() < 1e-3 * size + 1e-5),
+                                "{b:?} {a:?}"
+                            );
                         }
                     }
                     thirds.clear();
                     // Its foot is where z is 0.
-                    let [(za, ra), (zb, rb)] =
-                        if one[0][2] == 0.0 { [(0.0, first), (one[1][2], second)] } else { [(0.0, second), (one[0][2], first)] };
+                    let [(za, ra), (zb, rb)] = if one[0][2] == 0.0 {
+                        [(0.0, first), (one[1][2], second)]
+                    } else {
+                        [(0.0, second), (one[0][2], first)]
+                    };
                     assert!(zb > 0.0, "{n:?}");
                     made = Some(Primitive::Frustum { a: [0.0, 0.0, za], ra, b: [0.0, 0.0, zb], rb });
                 }
