@@ -80,9 +80,6 @@ pub fn draw(
         Renderer::Aqsis => Some(RibRenderer::Aqsis),
     };
     let picture = if let Some(renderer) = renderer {
-        if args.look == Look::Studio {
-            console.note("note: RIB shows the exact look; the studio look is the preview's and POV-Ray's");
-        }
         render_rib(renderer, &model, &templates, folder.path(), size, &origin, progress)?
     } else {
         let pov = Pov::new(&model, &templates, SCENE, size, &origin);

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::args::{RenderArgs, Show};
+use super::args::{Look, RenderArgs, Renderer, Show};
 use super::compare::to_screen;
 use super::console::Console;
 use super::draw::{draw, report};
@@ -39,6 +39,9 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
     let written: Vec<PathBuf> = outputs.iter().filter(|_| keep).chain(&args.sheet).cloned().collect();
     output::check(&written, console.json || args.show.contains(&Show::Terminal))?;
     jobs.guard(&written)?;
+    if matches!(args.with, Some(Renderer::Pixie | Renderer::Aqsis)) && args.look == Look::Studio {
+        console.note("note: RIB shows the exact look (--look exact); the studio look is the preview's and POV-Ray's");
+    }
     let mut tiles = Vec::new();
     for (job, path) in jobs.list.iter().zip(&outputs) {
         let begun = Instant::now();

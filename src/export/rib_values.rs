@@ -12,8 +12,8 @@ use crate::geom::Bounds;
 use crate::math::DVec3;
 use crate::model::{Camera, Digits, Light, Model, Projection};
 
-/// Pixels along a side of a shadow map.
-const MAP: u32 = 2048;
+/// Fewest and most pixels along a side of a shadow map, which has about two for each of the picture's.
+const MAP: [u32; 2] = [512, 4096];
 /// What is nearer casts no shadow, as a share of the extent: traced, and by a map, which knows depths at its pixels alone.
 const RAY_BIAS: f64 = 0.002;
 const MAP_BIAS: f64 = 0.005;
@@ -86,7 +86,9 @@ pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin,
     let mut maps = Vec::new();
     // From anywhere that is seen, past everything.
     let seen = sheets.iter().map(|sheet| sheet.far).fold(extent, f64::max);
-    let world = World { bounds, digits, reach: 2.0 * (seen + bounds.size().length().max(extent)) };
+    let reach = 2.0 * (seen + bounds.size().length().max(extent));
+    let map = size[0].max(size[1]).saturating_mul(2).clamp(MAP[0], MAP[1]).next_power_of_two();
+    let world = World { bounds, digits, reach, map };
     for (i, light) in model.lights.iter().enumerate() {
         let (values, map) = light_values(&stem, i, light, &world, options.shadows);
         lights.push(values);
@@ -140,6 +142,8 @@ struct World {
     digits: Digits,
     /// No shadow is longer.
     reach: f64,
+    /// Pixels along a side of a shadow map.
+    map: u32,
 }
 
 /// A light, and the shadow map that it needs.
@@ -150,11 +154,11 @@ fn light_values(
     world: &World,
     shadows: RibShadows,
 ) -> (LightValues, Option<MapValues>) {
-    let World { bounds, digits, reach } = *world;
+    let World { bounds, digits, reach, .. } = *world;
     match *light {
         Light::Sun { towards, colour: c, shadow, .. } => {
             let needs_map = shadow && shadows == RibShadows::Maps && !bounds.is_empty();
-            let map = needs_map.then(|| map_values(stem, i, towards, bounds, digits));
+            let map = needs_map.then(|| map_values(stem, i, towards, world));
             let light = LightValues {
                 shader: match shadows {
                     RibShadows::Rays if shadow => "raydistant",
@@ -194,7 +198,8 @@ pub(super) fn has_casters(model: &Model, options: RibOptions) -> bool {
 }
 
 /// A shadow map: the scene as a sun sees it.
-fn map_values(stem: &str, i: usize, towards: DVec3, bounds: Bounds, digits: Digits) -> MapValues {
+fn map_values(stem: &str, i: usize, towards: DVec3, world: &World) -> MapValues {
+    let World { bounds, digits, .. } = *world;
     let centre = bounds.centre();
     let radius = bounds.size().length() * 0.5 * 1.02;
     let eye = centre + towards * (radius * 2.0);
@@ -203,7 +208,7 @@ fn map_values(stem: &str, i: usize, towards: DVec3, bounds: Bounds, digits: Digi
     let half = number(radius, digits);
     MapValues {
         light: format!("light {}", i + 1),
-        size: MAP,
+        size: world.map,
         stem: format!("{stem}-light{}", i + 1),
         window: format!("-{half} {half} -{half} {half}"),
         clipping: format!("{} {}", number(radius * 0.9, digits), number(radius * 3.1, digits)),
