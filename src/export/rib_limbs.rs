@@ -60,25 +60,21 @@ impl Text {
         self.bytes.extend_from_slice(word.as_bytes());
     }
 
+    fn numbers(&mut self, numbers: &[f64], digits: Digits) {
+        for &x in numbers {
+            push_number(&mut self.bytes, x, digits, digits.scale());
+            self.bytes.push(b' ');
+        }
+    }
+
     fn lengths(&mut self, lengths: &[f64]) {
-        for &x in lengths {
-            push_number(&mut self.bytes, x, self.digits, self.digits.scale());
-            self.bytes.push(b' ');
-        }
+        self.numbers(lengths, self.digits);
     }
 
-    /// Coordinates around an axis: finer, since what they differ by counts.
-    fn around(&mut self, lengths: &[f64]) {
-        let finer = Digits(self.digits.0 + 2);
-        for &x in lengths {
-            push_number(&mut self.bytes, x, finer, finer.scale());
-            self.bytes.push(b' ');
-        }
-    }
-
-    /// Sets s of all corners.
-    fn begin_along(&mut self, s: f64) {
-        if self.along != Some(s) {
+    /// Where there is a pattern, sets s of all corners: how far along its limb what follows is, if it shows the pattern.
+    fn set_along(&mut self, along: Option<f64>) {
+        let s = along.unwrap_or(-1.0);
+        if self.along.is_some_and(|last| last != s) {
             self.along = Some(s);
             self.word("TextureCoordinates ");
             (0..4).for_each(|_| self.lengths(&[s, 0.0]));
@@ -90,10 +86,7 @@ impl Text {
     fn begin_space(&mut self, axes: [DVec3; 3], origin: DVec3) {
         self.word("TransformBegin ConcatTransform [");
         for axis in axes {
-            for c in axis.to_array() {
-                push_number(&mut self.bytes, c, MATRIX, MATRIX.scale());
-                self.bytes.push(b' ');
-            }
+            self.numbers(&axis.to_array(), MATRIX);
             self.word("0 ");
         }
         self.lengths(&origin.to_array());
@@ -102,9 +95,7 @@ impl Text {
 
     fn ball(&mut self, ball: &Ball, offset: DVec3, laid: Option<LimbFrame>) {
         let centre = ball.centre + offset;
-        if self.along.is_some() {
-            self.begin_along(laid.map_or(-1.0, |frame| frame.along));
-        }
+        self.set_along(laid.map(|frame| frame.along));
         if let Some(LimbFrame { axes: [x, z, y], .. }) = laid {
             self.begin_space([x, y, z], centre);
         } else {
@@ -127,9 +118,7 @@ impl Text {
         let laid = laid.filter(|_| !is_turned);
         let (foot, w, ra, rb) = if is_turned { (f.b, -w, rb, ra) } else { (f.a, w, ra, rb) };
         let u = laid.map_or(w.any_orthonormal_vector(), |frame| frame.axes[0]);
-        if self.along.is_some() {
-            self.begin_along(laid.map_or(-1.0, |frame| frame.local(f.a).y));
-        }
+        self.set_along(laid.map(|frame| frame.local(f.a).y));
         self.begin_space([u, w.cross(u), w], foot + offset);
         if rb > 0.0 {
             self.hyperboloid([ra, rb], long);
@@ -146,10 +135,12 @@ impl Text {
     fn hyperboloid(&mut self, [ra, rb]: [f64; 2], long: f64) {
         let [(narrow, z), (wide, other)] = if ra <= rb { [(ra, 0.0), (rb, long)] } else { [(rb, long), (ra, 0.0)] };
         let wide = wide.max(narrow + 1.0 / self.digits.scale());
+        // What the ends differ by counts.
+        let finer = Digits(self.digits.0 + 2);
         for [cos, sin] in THIRDS {
             self.word("Hyperboloid ");
             for (r, z) in [(narrow, z), (wide, other)] {
-                self.around(&[r * cos, r * sin]);
+                self.numbers(&[r * cos, r * sin], finer);
                 self.lengths(&[z]);
             }
             self.word("120 ");

@@ -10,6 +10,9 @@ use crate::model::{Camera, Digits, FADE, Light, Model, Projection, Sky};
 
 /// Squares across and down the picture.
 const SQUARES: [u32; 2] = [16, 48];
+/// Pixels along a square of a sky that is a picture, and most squares along a side.
+const PIXELS: u32 = 4;
+const MOST_SQUARES: u32 = 400;
 /// The sky stands at so many times the distance of the farthest of the scene.
 const BEHIND: f64 = 1.2;
 
@@ -31,10 +34,13 @@ pub(super) fn sheets(model: &Model, size: [u32; 2], digits: Digits) -> Vec<Sheet
     let far = model.bounds().corners().map(|p| depth(camera, p)).into_iter();
     let far = far.chain(ground.as_ref().map(|sheet| sheet.far));
     let wall = far.fold((camera.look_at - camera.at).length(), f64::max) * BEHIND;
-    let is_plain = matches!(model.sky, Sky::Gradient { horizon, zenith } if horizon == zenith);
+    let count = match model.sky {
+        Sky::Gradient { horizon, zenith } if horizon == zenith => [1, 1],
+        Sky::Gradient { .. } => SQUARES,
+        Sky::Picture { .. } => size.map(|side| (side / PIXELS).clamp(1, MOST_SQUARES)),
+    };
     let mut grid = Grid::default();
-    let [across, down] = if is_plain { [1, 1] } else { SQUARES };
-    for square in squares([across, down], size) {
+    for square in squares(count, size) {
         let rays = square.map(|[x, y]| ray(camera, x, y));
         // To the wall, which stands across the view.
         let place =
