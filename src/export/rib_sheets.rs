@@ -45,9 +45,7 @@ pub(super) fn sheets(model: &Model, size: [u32; 2], digits: Digits) -> Vec<Sheet
         // To the wall, which stands across the view.
         let place =
             |(from, way): (DVec3, DVec3)| from + way * ((wall - depth(camera, from)) / depth(camera, camera.at + way));
-        // Below the horizon the sky goes on as it is there.
-        let seen = |way: DVec3| if way.z < 0.0 { way.with_z(0.0).normalize_or(way) } else { way };
-        grid.polygon(rays.map(|(from, way)| (place((from, way)), model.sky.colour(seen(way)))).to_vec());
+        grid.polygon(rays.map(|(from, way)| (place((from, way)), model.sky.colour(way))).to_vec());
     }
     let surface = "Surface \"constant\"".to_owned();
     let sky = Sheet { name: "sky", surface, body: grid.text(digits), far: wall };
