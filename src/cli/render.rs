@@ -39,9 +39,7 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
     let written: Vec<PathBuf> = outputs.iter().filter(|_| keep).chain(&args.sheet).cloned().collect();
     output::check(&written, console.json || args.show.contains(&Show::Terminal))?;
     jobs.guard(&written)?;
-    if matches!(args.with, Some(Renderer::Pixie | Renderer::Aqsis)) && args.look == Look::Studio {
-        console.note("note: RIB shows the exact look (--look exact); the studio look is the preview's and POV-Ray's");
-    }
+    note_look(args, console);
     let mut tiles = Vec::new();
     for (job, path) in jobs.list.iter().zip(&outputs) {
         let begun = Instant::now();
@@ -79,6 +77,13 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
         }
     }
     Ok(())
+}
+
+/// Tells that RIB has one look, where another is asked for.
+fn note_look(args: &RenderArgs, console: &Console) {
+    if matches!(args.with, Some(Renderer::Pixie | Renderer::Aqsis)) && args.look == Look::Studio {
+        console.note("note: RIB shows the exact look (--look exact); the studio look is the preview's and POV-Ray's");
+    }
 }
 
 fn require_picture(path: &Path, traces: bool) -> Result<(), Failure> {
