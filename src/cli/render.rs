@@ -23,16 +23,7 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
     let keep = args.output.is_some() || args.sheet.is_none();
     let default = PathBuf::from(format!("{}.png", jobs.pattern));
     let outputs = jobs.outputs(args.output.as_ref().unwrap_or(&default).as_os_str())?;
-    let traces = args.with.is_none() && !args.schematic;
-    for output in &outputs {
-        require_picture(output, traces)?;
-    }
-    if let Some(sheet) = &args.sheet {
-        require_picture(sheet, false)?;
-    }
-    if !args.schematic && args.show.iter().any(|show| show.mark().is_some()) {
-        return Err(Failure::Usage("marks of the construction are drawn with --schematic".to_owned()));
-    }
+    check(args, &outputs)?;
     if args.watch {
         return watch::run(args, threads, console);
     }
@@ -75,6 +66,21 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
         } else {
             output::tell(sheet, serde_json::Value::Null, console);
         }
+    }
+    Ok(())
+}
+
+/// Refuses pictures that cannot be written, and marks that are not drawn.
+fn check(args: &RenderArgs, outputs: &[PathBuf]) -> Result<(), Failure> {
+    let traces = args.with.is_none() && !args.schematic;
+    for output in outputs {
+        require_picture(output, traces)?;
+    }
+    if let Some(sheet) = &args.sheet {
+        require_picture(sheet, false)?;
+    }
+    if !args.schematic && args.show.iter().any(|show| show.mark().is_some()) {
+        return Err(Failure::Usage("marks of the construction are drawn with --schematic".to_owned()));
     }
     Ok(())
 }
