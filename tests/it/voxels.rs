@@ -37,7 +37,7 @@ fn least_distance([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(6))]
+    #![proptest_config(ProptestConfig::with_cases(12))]
     /// In voxels limbs stay in the space, out of what is forbidden, where they cling, away from what they keep from, and apart
     /// from each other; they branch at their age.
     #[test]
