@@ -8,7 +8,7 @@ use lichtenberg::assemble::{Backdrop, ObjectRecipe, Recipe, grow, model};
 use lichtenberg::files::decode_plate;
 use lichtenberg::geom::{Neighbours, Shape, Solid};
 use lichtenberg::grow::{Endpoints, Generators, LatticeSpace, Paths, Placement, Space, Step};
-use lichtenberg::math::{DVec3, Progress, Weights};
+use lichtenberg::math::{DVec3, Memory, Progress, Weights};
 use lichtenberg::model::{GlowSpec, ViewFrame, ViewSpec};
 use lichtenberg::picture::{Depth, Shone};
 use lichtenberg::skeleton::Width;
@@ -38,10 +38,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         view: Some(backdrop.clone()),
         ..Recipe::default()
     };
-    let (memory, progress) = (1 << 30, Progress::default());
-    let grown = grow(&recipe, &[], memory, &progress)?;
-    let strokes = model(&recipe, &grown, recipe.size, &progress)?.strokes;
-    let shone = Shone::new(&backdrop, recipe.size, &strokes, recipe.seed, memory, &progress)?;
+    let (memory, progress) = (Memory::new(1 << 30), Progress::default());
+    let grown = grow(&recipe, &[], &memory, &progress)?;
+    let strokes = model(&recipe, &grown, recipe.size, &memory, &progress)?.strokes;
+    let shone = Shone::new(&backdrop, recipe.size, &strokes, recipe.seed, &memory, &progress)?;
     shone.write_png(Depth::Eight, &[], &mut io::stdout().lock())?;
     Ok(())
 }

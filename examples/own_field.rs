@@ -9,7 +9,7 @@ use lichtenberg::export::{SvgOptions, write_svg};
 use lichtenberg::geom::{Neighbours, Shape, Solid};
 use lichtenberg::graph::{CostField, FieldFunction, Measure};
 use lichtenberg::grow::{Endpoints, Generators, LatticeSpace, Paths, Placement, Space, Step};
-use lichtenberg::math::{Colour, DVec3, Progress};
+use lichtenberg::math::{Colour, DVec3, Memory, Progress};
 use lichtenberg::model::{CameraSpec, Material};
 use lichtenberg::skeleton::Width;
 
@@ -40,9 +40,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         materials: vec![("ink".to_owned(), Material::ink(Colour::from_srgb([34, 85, 170])))],
         ..Recipe::default()
     };
-    let progress = Progress::default();
-    let grown = grow(&recipe, &[], 1 << 30, &progress)?;
-    let model = model(&recipe, &grown, recipe.size, &progress)?;
+    let (memory, progress) = (Memory::new(1 << 30), Progress::default());
+    let grown = grow(&recipe, &[], &memory, &progress)?;
+    let model = model(&recipe, &grown, recipe.size, &memory, &progress)?;
     write_svg(&model, SvgOptions { size: recipe.size }, io::stdout().lock())?;
     Ok(())
 }

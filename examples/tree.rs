@@ -7,7 +7,7 @@ use lichtenberg::assemble::{ObjectRecipe, Recipe, grow, model};
 use lichtenberg::export::{Origin, Pov, Templates};
 use lichtenberg::geom::{Neighbours, Shape, Solid};
 use lichtenberg::grow::{Endpoints, LatticeSpace, Paths, Placement, RandomPlaces, Space, Step};
-use lichtenberg::math::{DVec3, Progress};
+use lichtenberg::math::{DVec3, Memory, Progress};
 use lichtenberg::skeleton::{PerClass, Taper, Width};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -33,9 +33,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         objects: vec![ObjectRecipe::new("tree", vec![0])],
         ..Recipe::default()
     };
-    let progress = Progress::default();
-    let grown = grow(&recipe, &[], 1 << 30, &progress)?;
-    let model = model(&recipe, &grown, recipe.size, &progress)?;
+    let (memory, progress) = (Memory::new(1 << 30), Progress::default());
+    let grown = grow(&recipe, &[], &memory, &progress)?;
+    let model = model(&recipe, &grown, recipe.size, &memory, &progress)?;
     Pov::new(&model, &Templates::default(), "tree", recipe.size, &Origin::default()).write_inc(io::stdout().lock())?;
     Ok(())
 }

@@ -34,7 +34,7 @@
 //! ```
 //! use lichtenberg::export::{Origin, Pov, Templates};
 //! use lichtenberg::files::embedded_scenes;
-//! use lichtenberg::math::Progress;
+//! use lichtenberg::math::{Memory, Progress};
 //! use lichtenberg::scene::{Override, Source, grow, load, model};
 //! use lichtenberg::trace::{Look, RenderSettings, World, render};
 //!
@@ -43,10 +43,11 @@
 //! let fewer = Override { path: "grow.elm.to.twigs.count".to_owned(), value: "20".to_owned() };
 //!
 //! let scene = load(&source, &[fewer])?;
-//! let grown = grow(&scene, &[], 1 << 30, &Progress::default())?;
+//! let memory = Memory::new(1 << 30);
+//! let grown = grow(&scene, &[], &memory, &Progress::default())?;
 //! assert_eq!(grown[0].skeleton.paths.len(), 38);
 //!
-//! let model = model(&scene, &grown, scene.recipe.size, &Progress::default())?;
+//! let model = model(&scene, &grown, scene.recipe.size, &memory, &Progress::default())?;
 //! let mut inc = Vec::new();
 //! Pov::new(&model, &Templates::default(), "elm", scene.recipe.size, &Origin::default()).write_inc(&mut inc)?;
 //! assert!(String::from_utf8(inc)?.contains("#declare Elm_Height"));

@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use lichtenberg::files::embedded_scenes;
-use lichtenberg::math::Progress;
+use lichtenberg::math::{Memory, Progress};
 use lichtenberg::scene::{Source, grow, load, model};
 
 #[test]
@@ -21,8 +21,8 @@ fn files_are_the_same_everywhere() {
         while let Some((name, text, folder)) = scenes.get(next.fetch_add(1, Ordering::Relaxed)).cloned() {
             let lines = alone.install(|| {
                 let scene = load(&Source { name: name.clone(), text: text.to_owned(), folder }, &[]).unwrap();
-                let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
-                let model = model(&scene, &grown, [320, 240], &Progress::default()).unwrap();
+                let grown = grow(&scene, &[], &Memory::default(), &Progress::default()).unwrap();
+                let model = model(&scene, &grown, [320, 240], &Memory::default(), &Progress::default()).unwrap();
                 digests::digests(&name, &scene, &model, true)
             });
             let place = scenes.iter().position(|(other, ..)| *other == name).unwrap();

@@ -7,7 +7,7 @@
 use std::time::Instant;
 
 use lichtenberg::files::Folder;
-use lichtenberg::math::Progress;
+use lichtenberg::math::{Memory, Progress};
 use lichtenberg::scene::{Source, grow, load};
 
 /// Grows a scene of one space of 512 by 512 nodes; returns the median seconds and the nodes that grew.
@@ -34,7 +34,7 @@ grow = ["bolt"]
     let mut nodes = 0;
     for _ in 0..runs {
         let begun = Instant::now();
-        let grown = grow(&scene, &[], 1 << 32, &Progress::default()).expect("it grows");
+        let grown = grow(&scene, &[], &Memory::default(), &Progress::default()).expect("it grows");
         seconds.push(begun.elapsed().as_secs_f64());
         nodes = grown.iter().map(|step| step.skeleton.nodes.len()).sum();
     }

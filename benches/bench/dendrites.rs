@@ -11,7 +11,7 @@ use lichtenberg::export::{Origin, Pov, Rib, RibOptions, Templates};
 use lichtenberg::files::{Folder, embedded_scenes};
 use lichtenberg::geom::Surface;
 use lichtenberg::grow::Grown;
-use lichtenberg::math::{Progress, mix};
+use lichtenberg::math::{Memory, Progress, mix};
 use lichtenberg::scene::{Loaded, Override, Source, grow, load, model};
 use lichtenberg::skeleton::dimension;
 use lichtenberg::trace::{Look, RenderSettings, World, render};
@@ -25,7 +25,7 @@ fn embedded(name: &str, overrides: &[Override]) -> Result<Loaded, Failure> {
 }
 
 fn grown(scene: &Loaded) -> Vec<Grown> {
-    grow(scene, &[], u64::MAX, &Progress::default()).expect("it grows")
+    grow(scene, &[], &Memory::default(), &Progress::default()).expect("it grows")
 }
 
 fn one_thread<T: Send>(run: impl FnOnce() -> T + Send) -> T {
@@ -49,7 +49,7 @@ fn tables() -> Result<(), Failure> {
             let grown = grown(&scene);
             endpoints = grown.iter().map(|g| g.skeleton.paths.len()).sum();
             if name.ends_with("fig16") {
-                model(&scene, &grown, scene.recipe.size, &Progress::default()).expect("a model");
+                model(&scene, &grown, scene.recipe.size, &Memory::default(), &Progress::default()).expect("a model");
             }
         };
         let one = one_thread(|| median(&mut run, RUNS));
@@ -160,7 +160,7 @@ fn moss() -> Result<(), Failure> {
     let all = grown(&scene);
     let planned = begun.elapsed().as_secs_f64();
     let strands: usize = all.iter().map(|g| g.skeleton.paths.len()).sum();
-    let model = model(&scene, &all, scene.recipe.size, &Progress::default())?;
+    let model = model(&scene, &all, scene.recipe.size, &Memory::default(), &Progress::default())?;
     drop(all);
     let dressed = begun.elapsed().as_secs_f64();
     let templates = Templates::default();

@@ -5,7 +5,7 @@ use crate::Failure;
 use crate::clock::median;
 use lichtenberg::files::Folder;
 use lichtenberg::grow::Grown;
-use lichtenberg::math::Progress;
+use lichtenberg::math::{Memory, Progress};
 use lichtenberg::scene::{Loaded, Source, grow, load};
 
 /// Each is run this often, and the median told.
@@ -17,7 +17,7 @@ fn scene(text: &str) -> Result<Loaded, Failure> {
 }
 
 fn grown(scene: &Loaded) -> Vec<Grown> {
-    grow(scene, &[], u64::MAX, &Progress::default()).expect("it grows")
+    grow(scene, &[], &Memory::default(), &Progress::default()).expect("it grows")
 }
 
 pub fn run() -> Result<(), Failure> {

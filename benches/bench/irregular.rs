@@ -8,7 +8,7 @@ use crate::clock::median;
 use lichtenberg::files::Folder;
 use lichtenberg::graph::{Joining, Node, Region, Scatter, ScatterPlan, Sectors, WeightTable};
 use lichtenberg::math::Weights;
-use lichtenberg::math::{DVec3, Progress, Stream};
+use lichtenberg::math::{DVec3, Memory, Progress, Stream};
 use lichtenberg::plan::routes;
 use lichtenberg::scene::{Source, grow, load};
 
@@ -38,7 +38,7 @@ pub fn run() -> Result<(), Failure> {
         let mut endpoints = 0;
         let seconds = median(
             || {
-                let grown = grow(&scene, &[], u64::MAX, &Progress::default()).expect("it grows");
+                let grown = grow(&scene, &[], &Memory::default(), &Progress::default()).expect("it grows");
                 nodes = grown.iter().map(|g| g.nodes).sum::<u64>();
                 endpoints = grown.iter().map(|g| g.skeleton.paths.len()).sum::<usize>();
             },

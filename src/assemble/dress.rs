@@ -3,7 +3,7 @@
 use super::{AssembleError, ObjectRecipe, Recipe};
 use crate::geom::{Bounds, Surface};
 use crate::grow::{Grown, Regions, Space};
-use crate::math::{DVec3, Progress, Stream};
+use crate::math::{DVec3, Memory, Progress, Stream};
 use crate::model::{Body, BodyError, Instance, Material, Object, to_world};
 use crate::skeleton::Skeleton;
 use crate::skin::{IsosurfaceSpec, Skin, by_level, cones, foot, isosurface, painted, spheres, surface_mesh, tubes};
@@ -16,6 +16,7 @@ pub(super) fn dress(
     grown: &[Grown],
     skeletons: &[&Skeleton],
     materials: &mut Vec<(String, Material)>,
+    memory: &Memory,
     progress: &Progress,
 ) -> Result<Vec<Object>, AssembleError> {
     let wrong = |error: BodyError| AssembleError::body(&recipe.name, error);
@@ -23,7 +24,7 @@ pub(super) fn dress(
     let whole = match (&recipe.mesh, recipe.skin) {
         (Some(mesh), _) => Object::of_mesh(name, mesh, at, material),
         (None, Skin::Surface) => return solids(scene, recipe, grown),
-        (None, Skin::Isosurface(spec)) => enclosed(scene, recipe, &spec, grown, skeletons, progress)?,
+        (None, Skin::Isosurface(spec)) => enclosed(scene, recipe, &spec, grown, skeletons, memory, progress)?,
         (None, Skin::Cones) => cones(name, skeletons, is_flat, at, material),
         (None, Skin::Spheres) => spheres(name, skeletons, is_flat, at, material),
         (None, Skin::Mesh) => foot(skeletons)
@@ -59,12 +60,13 @@ fn enclosed(
     spec: &IsosurfaceSpec,
     grown: &[Grown],
     skeletons: &[&Skeleton],
+    memory: &Memory,
     progress: &Progress,
 ) -> Result<Result<Object, BodyError>, AssembleError> {
     let solids = |i: usize| grown[i].regions.as_ref().map(Regions::solid);
     let step = recipe.steps.first().map(|&step| scene.steps[step].with_solids(&solids));
     let space = step.as_ref().and_then(|step| step.space.as_ref()).and_then(Space::lattice);
-    let surface = isosurface(spec, skeletons, space, scene.is_flat, scene.seed, progress);
+    let surface = isosurface(spec, skeletons, space, scene.is_flat, scene.seed, memory, progress);
     let surface = surface.map_err(|error| AssembleError::isosurface(&recipe.name, error))?;
     Ok(foot(skeletons).ok_or(BodyError::Empty).and_then(|root| {
         let mesh = surface_mesh(&surface, root, scene.is_flat);

@@ -1,7 +1,7 @@
 //! Why a recipe gave no model.
 
 use crate::grow::GrowError;
-use crate::math::Cancelled;
+use crate::math::{Cancelled, OutOfMemory};
 use crate::model::{BodyError, CameraError};
 use crate::skin::IsosurfaceError;
 
@@ -28,16 +28,8 @@ pub enum AssembleError {
     #[error(transparent)]
     Camera(CameraError),
     /// It would take more memory than allowed.
-    #[error(
-        "the scene needs about {} MB of memory, more than the {} MB allowed: use a wider spacing or fewer nodes, or raise --max-memory",
-        needed.div_ceil(1_000_000), limit / 1_000_000
-    )]
-    Memory {
-        /// Bytes that it needs.
-        needed: u64,
-        /// Bytes that it may take.
-        limit: u64,
-    },
+    #[error("the scene needs {0}: use a wider spacing or fewer nodes, or raise --max-memory")]
+    Memory(#[from] OutOfMemory),
     /// Stopped by its [`crate::math::Progress`].
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -67,6 +59,7 @@ impl From<GrowError> for AssembleError {
     fn from(error: GrowError) -> Self {
         match error {
             GrowError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            GrowError::Memory(error) => Self::Memory(error),
             GrowError::Step { .. } => Self::Grow(error),
         }
     }

@@ -5,28 +5,28 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::memory::within;
+use super::memory::bytes_of;
 use super::plants::shape_plants;
 use super::{AssembleError, Recipe, bytes_needed};
 use crate::geom::MarkKind;
 use crate::grow::{Canopy, Context, GrowError, Grown, Regions, Rounds, Step};
-use crate::math::Progress;
+use crate::math::{Memory, Progress};
 use crate::skeleton::Skeleton;
 
-/// Grows every step of `recipe` within `max_memory` bytes; `show` lists what construction drawings need.
+/// Grows every step of `recipe` within `memory`; `show` lists what construction drawings need.
 ///
 /// # Errors
 /// [`AssembleError`].
 pub fn grow(
     recipe: &Recipe,
     show: &[MarkKind],
-    max_memory: u64,
+    memory: &Memory,
     progress: &Progress,
 ) -> Result<Vec<Grown>, AssembleError> {
     recipe.check()?;
-    within(bytes_needed(recipe), max_memory)?;
+    memory.ask(bytes_needed(recipe))?;
     let grown = recipe.steps.iter().map(|_| None).collect();
-    let mut scene = Schedule { recipe, show, max_memory, progress, grown, repeated: BTreeMap::new() };
+    let mut scene = Schedule { recipe, show, memory, progress, grown, repeated: BTreeMap::new() };
     while scene.grown.iter().any(Option::is_none) {
         scene.grow_round()?;
     }
@@ -40,7 +40,7 @@ pub fn grow(
 struct Schedule<'a> {
     recipe: &'a Recipe,
     show: &'a [MarkKind],
-    max_memory: u64,
+    memory: &'a Memory,
     progress: &'a Progress,
     /// What has grown, by step.
     grown: Vec<Option<Grown>>,
@@ -58,7 +58,9 @@ impl Schedule<'_> {
         };
         let ready: Vec<usize> = (0..steps.len()).filter(is_ready).collect();
         let earlier: Vec<Option<&Skeleton>> = self.grown.iter().map(|g| g.as_ref().map(|g| &g.skeleton)).collect();
-        let context = Context { seed: self.recipe.seed, grown: &earlier, show: self.show, progress: self.progress };
+        let memory = &self.memory.beside(self.bytes());
+        let context =
+            Context { seed: self.recipe.seed, grown: &earlier, show: self.show, memory, progress: self.progress };
         let mut round = Vec::new();
         for i in ready {
             match Rounds::begin(&steps[i], &context)? {
@@ -76,7 +78,7 @@ impl Schedule<'_> {
         let groups = groups(steps, round);
         let finished = self.grow_groups(&groups, &context)?;
         for (rounds, canopies) in self.repeated.values_mut().zip(&canopies) {
-            rounds.advance(canopies, self.show, self.max_memory, self.progress)?;
+            rounds.advance(canopies, self.show, memory, self.progress)?;
         }
         let finished = groups.into_iter().flatten().zip(finished.into_iter().flatten());
         let finished: Vec<(usize, Grown)> = finished.collect();
@@ -86,29 +88,42 @@ impl Schedule<'_> {
 
     /// Grows groups of steps, side by side where memory allows; the result is the same.
     fn grow_groups(&self, groups: &[Vec<usize>], context: &Context<'_>) -> Result<Vec<Vec<Grown>>, AssembleError> {
-        let steps = groups.iter().flatten().map(|&i| &self.recipe.steps[i]);
-        let needed: Vec<u64> = steps.map(|step| step.bytes_needed_from(context.grown)).collect();
-        within(needed.iter().copied().max().unwrap_or(0), self.max_memory)?;
-        let grow = |group: &Vec<usize>| self.grow_group(group, context);
-        let grown: Result<_, GrowError> = if needed.iter().sum::<u64>() <= self.max_memory {
+        let solids = groups.iter().flatten().flat_map(|&i| self.recipe.steps[i].solids());
+        let solids = solids.filter_map(|i| Some(self.grown[i].as_ref()?.regions.as_ref()?.solid_bytes_needed() as u64));
+        context.memory.ask(solids.max().unwrap_or(0))?;
+        let groups: Vec<Vec<Cow<'_, Step>>> =
+            groups.iter().map(|group| group.iter().map(|&i| self.with_solids(i)).collect()).collect();
+        let needed = |group: &Vec<Cow<'_, Step>>| group.iter().map(|s| s.bytes_needed_from(context.grown)).sum::<u64>();
+        let mut needed: Vec<u64> = groups.iter().map(needed).collect();
+        // No more at a time than there are threads.
+        needed.sort_unstable_by(|a, b| b.cmp(a));
+        needed.truncate(rayon::current_num_threads());
+        let grow = |group: &Vec<Cow<'_, Step>>| self.grow_group(group, context);
+        let grown: Result<_, GrowError> = if context.memory.ask(needed.iter().sum()).is_ok() {
             groups.par_iter().map(grow).collect()
         } else {
+            context.memory.ask(needed.first().copied().unwrap_or(0))?;
             groups.iter().map(grow).collect()
         };
         Ok(grown?)
     }
 
-    /// Grows steps that belong together.
-    fn grow_group(&self, group: &[usize], context: &Context<'_>) -> Result<Vec<Grown>, GrowError> {
+    /// Bytes of all that has grown so far.
+    fn bytes(&self) -> u64 {
+        let under_way = self.repeated.values().map(|rounds| rounds.skeleton().bytes() as u64);
+        bytes_of(self.grown.iter().flatten()) + under_way.sum::<u64>()
+    }
+
+    /// A step with the solids that have grown in its shapes.
+    fn with_solids(&self, step: usize) -> Cow<'_, Step> {
         let solids = |i: usize| self.grown[i].as_ref()?.regions.as_ref().map(Regions::solid);
+        let step = &self.recipe.steps[step];
+        if step.solids().is_empty() { Cow::Borrowed(step) } else { Cow::Owned(step.with_solids(&solids)) }
+    }
+
+    /// Grows steps that belong together.
+    fn grow_group(&self, steps: &[Cow<'_, Step>], context: &Context<'_>) -> Result<Vec<Grown>, GrowError> {
         let all = &self.recipe.steps;
-        let steps: Vec<Cow<'_, Step>> = group
-            .iter()
-            .map(|&i| match all[i].solids().is_empty() {
-                true => Cow::Borrowed(&all[i]),
-                false => Cow::Owned(all[i].with_solids(&solids)),
-            })
-            .collect();
         let steps: Vec<&Step> = steps.iter().map(AsRef::as_ref).collect();
         let before = (0..all.len()).filter(|&i| all[i].shares_space(steps[0]));
         let before: Vec<(&Step, &Skeleton)> = before.filter_map(|i| Some((&all[i], context.grown[i]?))).collect();

@@ -2,10 +2,11 @@
 
 use super::dress::dress;
 use super::lights::lights_along;
+use super::memory::{bytes_of, bytes_to_dress};
 use super::{AssembleError, Backdrop, ObjectRecipe, Recipe};
 use crate::geom::Mark;
 use crate::grow::Grown;
-use crate::math::{DVec3, Progress};
+use crate::math::{DVec3, Memory, Progress};
 use crate::model::{Camera, Ground, Material, Model, Object, Projection, to_world};
 use crate::skeleton::Skeleton;
 use crate::skin::{Skin, stroke};
@@ -13,11 +14,17 @@ use crate::skin::{Skin, stroke};
 /// The ground has faded into the horizon at this many times the camera's distance or the scene's size.
 const GROUND_REACH: f64 = 2.5;
 
-/// The model of `recipe` for a picture of `size` pixels, `grown` being what its steps yielded.
+/// The model of `recipe` for a picture of `size` pixels within `memory`, `grown` being what its steps yielded.
 ///
 /// # Errors
 /// [`AssembleError`] where an object cannot be shown, the camera is wrong, or on cancelling.
-pub fn model(recipe: &Recipe, grown: &[Grown], size: [u32; 2], progress: &Progress) -> Result<Model, AssembleError> {
+pub fn model(
+    recipe: &Recipe,
+    grown: &[Grown],
+    size: [u32; 2],
+    memory: &Memory,
+    progress: &Progress,
+) -> Result<Model, AssembleError> {
     recipe.check()?;
     let aspect = f64::from(size[0]) / f64::from(size[1]);
     // The camera is set when it is known what there is to see.
@@ -33,9 +40,11 @@ pub fn model(recipe: &Recipe, grown: &[Grown], size: [u32; 2], progress: &Progre
         marks: marks(recipe, grown),
         strokes: Vec::new(),
     };
+    let memory = memory.beside(bytes_of(grown));
     for object in &recipe.objects {
         progress.check()?;
-        add(recipe, object, grown, &mut model, progress)?;
+        let memory = memory.beside(model.bytes() as u64);
+        add(recipe, object, grown, &mut model, &memory, progress)?;
     }
     if recipe.view.is_none() {
         let balls = model.objects.iter().flat_map(Object::balls_in_world);
@@ -59,6 +68,7 @@ fn add(
     object: &ObjectRecipe,
     grown: &[Grown],
     model: &mut Model,
+    memory: &Memory,
     progress: &Progress,
 ) -> Result<(), AssembleError> {
     let whole: Vec<_> = object.steps.iter().map(|&step| &grown[step].skeleton).collect();
@@ -80,7 +90,8 @@ fn add(
     let is_solid = object.skin == Skin::Surface;
     let is_unborn = skeletons.iter().all(|s| s.nodes.is_empty()) && object.until < 1.0;
     if object.mesh.is_some() || is_solid || !is_unborn {
-        let parts = dress(recipe, object, grown, &skeletons, &mut model.materials, progress)?;
+        memory.ask(bytes_to_dress(object, grown, &skeletons))?;
+        let parts = dress(recipe, object, grown, &skeletons, &mut model.materials, memory, progress)?;
         model.objects.extend(parts);
     }
     Ok(())

@@ -18,7 +18,7 @@ use crate::skin::{LeavesSpec, Painting, Skin, ThornsSpec};
 /// use lichtenberg::assemble::{ObjectRecipe, Recipe, grow, model};
 /// use lichtenberg::geom::{Neighbours, Shape, Solid};
 /// use lichtenberg::grow::{Endpoints, Generators, LatticeSpace, Paths, Placement, Space, Step};
-/// use lichtenberg::math::{DVec3, Progress};
+/// use lichtenberg::math::{DVec3, Memory, Progress};
 /// use lichtenberg::skeleton::Width;
 ///
 /// let room = Shape::new(Solid::Box { min: DVec3::ZERO, max: DVec3::new(2.0, 1.0, 3.0) });
@@ -31,8 +31,9 @@ use crate::skin::{LeavesSpec, Painting, Skin, ThornsSpec};
 ///     ..Step::new("twig", Some(Space::Lattice(space)), Paths::method())
 /// };
 /// let recipe = Recipe { steps: vec![step], objects: vec![ObjectRecipe::new("twig", vec![0])], ..Recipe::default() };
-/// let grown = grow(&recipe, &[], 1 << 30, &Progress::default())?;
-/// let model = model(&recipe, &grown, recipe.size, &Progress::default())?;
+/// let memory = Memory::new(1 << 30);
+/// let grown = grow(&recipe, &[], &memory, &Progress::default())?;
+/// let model = model(&recipe, &grown, recipe.size, &memory, &Progress::default())?;
 /// assert_eq!(grown[0].skeleton.paths.len(), 2);
 /// assert_eq!(model.objects.len(), 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

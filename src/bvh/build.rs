@@ -13,8 +13,15 @@ use super::tree::{Aabb, Child, STACK, WIDTH};
 const TABLE_BITS: u32 = 16;
 /// Coincident boxes from which on clustering, quadratic in their number, is avoided.
 const MOST_COINCIDENT: usize = 4096;
-/// Boxes clustered at once, which bounds the temporary memory (200 bytes each).
+/// Boxes clustered at once, which bounds the temporary memory.
 const PIECE: usize = 1 << 16;
+/// Bytes that clustering takes of each.
+const PIECE_BYTES: usize = 128;
+
+/// Bytes that clustering takes while it is under way.
+pub(super) fn bytes_of_pieces(count: usize) -> usize {
+    count.min(PIECE * rayon::current_num_threads()) * PIECE_BYTES
+}
 
 /// Have fewer than [`MOST_COINCIDENT`] boxes the centre of another one, as far as a small hash table detects?
 pub(super) fn is_spread<'a>(boxes: impl Iterator<Item = &'a Aabb>) -> bool {

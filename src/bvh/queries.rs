@@ -16,6 +16,9 @@ use crate::math::{DVec3, prefetch};
 /// traversal").
 const PAD: f32 = 1e-6;
 
+/// Primitives of a block, about.
+const FULL: usize = 6;
+
 /// Eight primitives of `N` numbers each, as structure of arrays; unused lanes are NaN, which no ray hits.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
@@ -105,6 +108,14 @@ impl<P: Primitive<N>, const N: usize> Queries<P, N> {
         };
         let blocks = order.par_iter_mut().map(block).collect();
         Self { level, tree, blocks, ids: order, bounds: whole, count: ids.len(), kind: PhantomData }
+    }
+
+    /// Bytes that so many primitives take at the peak of construction: their boxes and order, and blocks and nodes ([`FULL`]); and what clusters one piece on each of two threads.
+    #[must_use]
+    pub fn bytes_needed(count: usize) -> usize {
+        let boxes = count * (size_of::<Aabb>() + size_of::<u32>());
+        let block = size_of::<Block<N>>() + size_of::<[u32; WIDTH]>() + Tree::NODE_BYTES;
+        boxes + count * block / FULL + build::bytes_of_pieces(count)
     }
 
     /// The number of primitives, without degenerate ones and, among thousands, without duplicates.
@@ -230,6 +241,13 @@ pub struct Boxes {
 }
 
 impl Boxes {
+    /// Bytes that so many boxes take at the peak of construction, as [`Queries::bytes_needed`] has it.
+    #[must_use]
+    pub fn bytes_needed(count: usize) -> usize {
+        let boxes = count * (size_of::<Bounds>() + size_of::<Aabb>());
+        boxes + count * (size_of::<[u32; WIDTH]>() + Tree::NODE_BYTES) / FULL + build::bytes_of_pieces(count)
+    }
+
     /// The hierarchy of `boxes`.
     #[must_use]
     pub fn new(boxes: &[Bounds]) -> Self {

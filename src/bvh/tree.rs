@@ -117,6 +117,9 @@ impl<S: Simd> Beam<S> {
 }
 
 impl Tree {
+    /// Bytes of a node.
+    pub const NODE_BYTES: usize = size_of::<Node>();
+
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
         self.nodes.capacity() * size_of::<Node>()

@@ -13,7 +13,7 @@ pub fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
     for job in &jobs.list {
         let progress = console.progress(job.name());
         let checked = jobs.load(job).and_then(|scene| {
-            scene::check(&scene, jobs.max_memory(), &progress)?;
+            scene::check(&scene, &jobs.memory, &progress)?;
             Ok(scene)
         });
         let scene = match checked {

@@ -77,8 +77,7 @@ pub fn run(args: &CompareArgs, console: &Console) -> Result<(), Failure> {
     }
     guard_inputs(args, &files)?;
     let wants_panels = args.html.is_some();
-    let max_memory = args.max_memory.unwrap_or_else(memory::default_limit);
-    memory::hold(max_memory);
+    let max_memory = memory::held(args.max_memory).left();
     let compare_one = |files: &Files| -> Result<(Pair, Panel), Failure> {
         if console.is_stopped() {
             return Err(Failure::Stopped);

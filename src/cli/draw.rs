@@ -8,9 +8,9 @@ use super::args::{Look, RenderArgs, Renderer};
 use super::console::Console;
 use super::error::Failure;
 use super::jobs::{Job, Jobs};
-use super::output;
 use super::preview::{Drawn, samples, shine, trace, view};
 use super::write::{read_templates, write_pov, write_rib};
+use super::{memory, output};
 use crate::export::{Origin, Pov, Rib, RibOptions, RibShadows, SvgOptions, Templates, write_svg};
 use crate::files::{Rgba, Scratch, decode_light, decode_png, draw_svg};
 use crate::geom::MarkKind;
@@ -19,12 +19,13 @@ use crate::model::Model;
 use crate::render::{Povray, RibRenderer};
 use crate::scene::Loaded;
 
-pub fn report(path: &Path, job: &Job, scene: &Loaded, begun: Instant, console: &Console) {
+pub fn report(path: &Path, jobs: &Jobs, job: &Job, scene: &Loaded, begun: Instant, console: &Console) {
     let details = serde_json::json!({
         "scene": job.name(),
         "seed": scene.recipe.seed,
         "size": scene.recipe.size,
         "seconds": begun.elapsed().as_secs_f64(),
+        "memory": memory::told(&jobs.memory),
     });
     output::tell(path, details, console);
 }
@@ -63,12 +64,12 @@ pub fn draw(
     if scene.recipe.view.is_some() && args.with.is_none() {
         refuse_tracing(args)?;
         let model = jobs.model(scene, &[], console, progress)?;
-        return shine(scene, &model.strokes, jobs.max_memory(), progress).map(Drawn::Shone);
+        return shine(scene, &model.strokes, &jobs.memory, progress).map(Drawn::Shone);
     }
     // What is wrong with the call is said before long work.
-    let view = view(args, scene.recipe.size, data, jobs.max_memory())?;
+    let view = view(args, scene.recipe.size, data, &jobs.memory)?;
     let model = jobs.model(scene, &[], console, progress)?;
-    let Some(with) = args.with else { return trace(&model, &view, progress) };
+    let Some(with) = args.with else { return trace(&model, &view, &jobs.memory, progress) };
     let templates = read_templates(args.templates.as_deref())?;
     let folder =
         Scratch::new().map_err(|e| Failure::Usage(format!("cannot make a folder for the renderer's files: {e}")))?;

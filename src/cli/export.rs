@@ -10,12 +10,17 @@ use super::args::{ExportArgs, Format, Shadows};
 use super::console::Console;
 use super::error::Failure;
 use super::jobs::{Job, Jobs};
+use super::memory;
 use super::output::{self, is_stdout};
 use super::render::check_name;
 use super::shown;
 use super::write::{Written, read_templates, write_pov, write_rib};
-use crate::export::{Pov, Rib, RibOptions, RibShadows, SvgOptions, Templates, write_obj, write_ply, write_svg};
+use crate::export::{
+    Pov, Rib, RibOptions, RibShadows, SvgOptions, Templates, obj_bytes_needed, ply_bytes_needed, write_obj, write_ply,
+    write_svg,
+};
 use crate::geom::MarkKind;
+use crate::math::Memory;
 use crate::model::{Model, Object};
 use crate::scene::Loaded;
 
@@ -55,10 +60,12 @@ pub fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
         let progress = console.progress(job.name());
         let model = jobs.model(&scene, &marks(args, &scene), console, &progress)?;
         let target = Target { folder, name, first: &first };
-        let written = write(args, &target, job, &scene, &model, &templates, console)?;
+        let written = write(args, &target, &jobs, job, &scene, &model, &templates, console)?;
         console.done();
         for path in written {
-            console.wrote(&path, serde_json::json!({ "scene": job.name(), "seed": scene.recipe.seed }));
+            let memory = memory::told(&jobs.memory);
+            let details = serde_json::json!({ "scene": job.name(), "seed": scene.recipe.seed, "memory": memory });
+            console.wrote(&path, details);
         }
     }
     Ok(())
@@ -81,7 +88,7 @@ fn write_to_stdout(args: &ExportArgs, jobs: &Jobs, console: &Console) -> Result<
     let scene = jobs.load(job)?;
     let model = jobs.model(&scene, &marks(args, &scene), console, &console.progress(job.name()))?;
     console.done();
-    write_one(args.to, &args.output, &scene, &model)
+    write_one(args.to, &args.output, &scene, &model, &jobs.memory)
 }
 
 /// The marks that are drawn.
@@ -103,8 +110,20 @@ fn is_whole(path: &Path) -> bool {
     read.is_ok() && end == *b"\n"
 }
 
+/// Asks for what writing `model` takes beside it.
+fn ask(model: &Model, needed: u64, memory: &Memory) -> Result<(), Failure> {
+    let asked = memory.beside(model.bytes() as u64).ask(needed);
+    asked.map_err(|error| Failure::Usage(format!("writing the scene needs {error}: raise --max-memory")))
+}
+
 /// Writes `model` in a format of one file.
-fn write_one(to: Format, path: &Path, scene: &Loaded, model: &Model) -> Result<(), Failure> {
+fn write_one(to: Format, path: &Path, scene: &Loaded, model: &Model, memory: &Memory) -> Result<(), Failure> {
+    let needed = match to {
+        Format::Obj => obj_bytes_needed(model),
+        Format::Ply => ply_bytes_needed(model),
+        Format::Svg | Format::Pov | Format::Rib => 0,
+    };
+    ask(model, needed, memory)?;
     output::write(path, |out| match to {
         Format::Obj => write_obj(model, out),
         Format::Ply => write_ply(model, out),
@@ -113,9 +132,11 @@ fn write_one(to: Format, path: &Path, scene: &Loaded, model: &Model) -> Result<(
 }
 
 /// Writes `model` in the format asked for; the files.
+#[allow(clippy::too_many_arguments, reason = "a scene, where it goes, and who listens")]
 fn write(
     args: &ExportArgs,
     target: &Target<'_>,
+    jobs: &Jobs,
     job: &Job,
     scene: &Loaded,
     model: &Model,
@@ -124,7 +145,7 @@ fn write(
 ) -> Result<Vec<PathBuf>, Failure> {
     match args.to {
         Format::Svg | Format::Obj | Format::Ply => {
-            write_one(args.to, target.first, scene, model)?;
+            write_one(args.to, target.first, scene, model, &jobs.memory)?;
             Ok(vec![target.first.to_owned()])
         }
         Format::Pov => {
@@ -139,6 +160,7 @@ fn write(
             if args.displace && model.objects.iter().any(leans) {
                 console.note("note: displaced thorns stand upright: only those that are cones `lean`");
             }
+            ask(model, Rib::bytes_needed(model, scene.recipe.size), &jobs.memory)?;
             let rib = Rib::new(model, templates, target.name, scene.recipe.size, &origin, options);
             Ok(told(write_rib(&rib, target.folder, target.name, args.gzip, args.force)?, console))
         }

@@ -9,6 +9,7 @@ use super::args::InfoArgs;
 use super::console::Console;
 use super::error::Failure;
 use super::jobs::Jobs;
+use super::memory;
 use crate::export::{Pov, Templates};
 use crate::grow::Grown;
 use crate::scene;
@@ -44,7 +45,7 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
         let grown = jobs.grow(&scene, &[], console, &progress)?;
         console.done();
         lap("grow");
-        let model = scene::model(&scene, &grown, scene.recipe.size, &progress)?;
+        let model = scene::model(&scene, &grown, scene.recipe.size, &jobs.memory, &progress)?;
         lap("model");
         let mut count = Count::default();
         Pov::new(&model, &Templates::default(), "scene", scene.recipe.size, &job.origin(scene.recipe.seed, "info"))
@@ -60,7 +61,8 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
             "edges": grown.iter().map(|s| s.edges).sum::<u64>(),
             "endpoints": grown.iter().map(|s| s.skeleton.paths.len()).sum::<usize>(),
             "primitives": model.primitives(),
-            "bytes": { "needed": scene.bytes_needed(), "pov": count.0 },
+            "bytes": { "needed": jobs.memory.most(), "pov": count.0 },
+            "memory": memory::told(&jobs.memory),
             "seconds": seconds.iter().map(|(stage, s)| ((*stage).to_owned(), json!(s))).collect::<serde_json::Map<_, _>>(),
             "steps": grown.iter().map(step).collect::<Vec<_>>(),
             "claims": scene::check_claims(&scene, &grown),
@@ -75,7 +77,7 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
             "  {} primitives, {:.1} MB as POV-Ray, {:.1} MB of memory at most",
             model.primitives(),
             count.0 as f64 / 1e6,
-            scene.bytes_needed() as f64 / 1e6
+            jobs.memory.most() as f64 / 1e6
         ));
         let times: Vec<_> = seconds.iter().map(|(stage, s)| format!("{stage} {s:.3} s")).collect();
         console.line(&format!("  {}", times.join(", ")));

@@ -15,7 +15,7 @@ use crate::export::Origin;
 use crate::files::{FileRead, Folder, Reads, embedded_scenes};
 use crate::geom::MarkKind;
 use crate::grow::Grown;
-use crate::math::{Progress, unknown};
+use crate::math::{Memory, Progress, unknown};
 use crate::model::Model;
 use crate::scene::{self, Loaded, Override, Source};
 
@@ -46,7 +46,8 @@ pub struct Jobs {
     /// The pattern that tells their outputs apart.
     pub pattern: String,
     size: Option<[u32; 2]>,
-    max_memory: u64,
+    /// What may be taken, and what is thought to be.
+    pub memory: Memory,
     reads: Reads,
 }
 
@@ -123,9 +124,8 @@ impl Jobs {
             }
         }
         let pattern = pattern(args, seeds.len() > 1);
-        let max_memory = args.limits.max_memory.unwrap_or_else(memory::default_limit);
-        memory::hold(max_memory);
-        Ok(Self { list, pattern, size: args.size, max_memory, reads })
+        let memory = memory::held(args.limits.max_memory);
+        Ok(Self { list, pattern, size: args.size, memory, reads })
     }
 
     /// The output of each job by `pattern`.
@@ -185,7 +185,7 @@ impl Jobs {
         console: &Console,
         progress: &Progress,
     ) -> Result<Vec<Grown>, Failure> {
-        let grown = scene::grow(scene, show, self.max_memory, progress)?;
+        let grown = scene::grow(scene, show, &self.memory, progress)?;
         for step in grown.iter().filter(|step| step.dropped > 0) {
             console.note(&format!(
                 "warning: step `{}` dropped {} endpoints that no path reaches",
@@ -204,12 +204,7 @@ impl Jobs {
         progress: &Progress,
     ) -> Result<Model, Failure> {
         let grown = self.grow(scene, show, console, progress)?;
-        Ok(scene::model(scene, &grown, scene.recipe.size, progress)?)
-    }
-
-    /// May a scene take this much memory?
-    pub fn max_memory(&self) -> u64 {
-        self.max_memory
+        Ok(scene::model(scene, &grown, scene.recipe.size, &self.memory, progress)?)
     }
 }
 

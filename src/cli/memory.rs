@@ -9,23 +9,37 @@ use std::thread;
 use std::time::Duration;
 
 use crate::files::exit;
+use crate::math::Memory;
 
 /// Where nothing else is known.
 const FALLBACK: u64 = 4 << 30;
 
+/// What a call may take: `max_memory` bytes, or what is known to be there. The process is held to it.
+pub fn held(max_memory: Option<u64>) -> Memory {
+    let limit = max_memory.unwrap_or_else(default_limit);
+    hold(limit);
+    Memory::new(limit)
+}
+
+/// What is told of a call's memory: bytes that it was thought to take, with the program's own, and that it took at most.
+pub fn told(memory: &Memory) -> serde_json::Value {
+    let peak = fs::read_to_string("/proc/self/status").ok().and_then(|status| kilobytes(&status, "VmHWM:"));
+    serde_json::json!({ "estimated": OWN + memory.most(), "peak": peak })
+}
+
 /// The default of `--max-memory`, in bytes.
-pub fn default_limit() -> u64 {
+fn default_limit() -> u64 {
     limit([machine(), control_group(Path::new("/sys/fs/cgroup")), slurm(&|name| std::env::var(name).ok())])
 }
 
 /// What the program takes for itself, whatever it makes.
-const OWN: u64 = 32 << 20;
+const OWN: u64 = 24 << 20;
 /// How often we look how much memory we take.
 const POLL: Duration = Duration::from_millis(20);
 
-/// From now on the process ends, with one clear error, when it takes more than `limit` bytes besides [`OWN`]. Estimates refuse what
-/// is too large before work starts; they do not know how much of it comes after growth.
-pub fn hold(limit: u64) {
+/// From now on the process ends, with one clear error, when it takes more than `limit` bytes besides [`OWN`]: where estimates,
+/// which refuse what is too large before it is made, are wrong.
+fn hold(limit: u64) {
     static HELD: Once = Once::new();
     HELD.call_once(|| {
         let watch = move || {

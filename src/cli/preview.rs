@@ -8,16 +8,17 @@ use super::error::Failure;
 use super::output;
 use crate::files::{Rgba, encode_png};
 use crate::glow::{Pass, ShineError};
-use crate::math::Progress;
+use crate::math::{Memory, Progress};
 use crate::model::{Model, Stroke};
 use crate::picture::{self, Depth, Shone, ShoneError, Traced};
 use crate::scene::Loaded;
-use crate::trace::{self, RenderSettings};
+use crate::trace::{self, RenderSettings, World};
 
 /// Samples a pixel where none are asked for, in the studio and the exact look.
 const SAMPLES: [u32; 2] = [8, 9];
-/// Bytes that a pixel takes at the peak, and with all that an EXR keeps of it.
-const PIXEL_BYTES: [u64; 2] = [64, 640];
+/// Bytes that a pixel takes at the peak; and with all that an EXR keeps of it: 148 as they are traced, 164 in layers, these once
+/// more while they are encoded, and what they are packed to.
+const PIXEL_BYTES: [u64; 2] = [64, 520];
 
 /// A finished picture.
 pub enum Drawn {
@@ -42,8 +43,8 @@ pub fn samples(args: &RenderArgs) -> u32 {
     args.samples.unwrap_or(SAMPLES[usize::from(args.look == Look::Exact)])
 }
 
-/// What is asked for of a picture of `size`, within `max_memory` bytes; `data` keeps what an EXR holds besides colours.
-pub fn view(args: &RenderArgs, size: [u32; 2], data: bool, max_memory: u64) -> Result<RenderSettings, Failure> {
+/// What is asked for of a picture of `size`, within `memory`; `data` keeps what an EXR holds besides colours.
+pub fn view(args: &RenderArgs, size: [u32; 2], data: bool, memory: &Memory) -> Result<RenderSettings, Failure> {
     let crop = args.crop.unwrap_or([0, 0, size[0], size[1]]);
     let [x, y, width, height] = crop;
     let fits = |from: u32, length: u32, whole: u32| from.checked_add(length).is_some_and(|end| end <= whole);
@@ -53,14 +54,11 @@ pub fn view(args: &RenderArgs, size: [u32; 2], data: bool, max_memory: u64) -> R
             size[0], size[1]
         )));
     }
-    let needed = u64::from(width) * u64::from(height) * PIXEL_BYTES[usize::from(data)];
-    if needed > max_memory {
-        return Err(Failure::Usage(format!(
-            "a picture of {width} by {height} pixels needs about {} MB of memory, more than the {} MB allowed: render it in parts, with --crop, or raise --max-memory",
-            needed.div_ceil(1_000_000),
-            max_memory / 1_000_000
-        )));
-    }
+    memory.ask(picture_bytes([width, height], data)).map_err(|error| {
+        Failure::Usage(format!(
+            "a picture of {width} by {height} pixels needs {error}: render it in parts, with --crop, or raise --max-memory"
+        ))
+    })?;
     Ok(RenderSettings {
         crop,
         transparent: args.transparent,
@@ -69,18 +67,29 @@ pub fn view(args: &RenderArgs, size: [u32; 2], data: bool, max_memory: u64) -> R
     })
 }
 
-/// Traces `view` of `model`.
-pub fn trace(model: &Model, view: &RenderSettings, progress: &Progress) -> Result<Drawn, Failure> {
+/// Bytes that a picture takes at its peak; `data` keeps what an EXR holds besides colours.
+fn picture_bytes([width, height]: [u32; 2], data: bool) -> u64 {
+    u64::from(width) * u64::from(height) * PIXEL_BYTES[usize::from(data)]
+}
+
+/// Traces `view` of `model` within `memory`.
+pub fn trace(model: &Model, view: &RenderSettings, memory: &Memory, progress: &Progress) -> Result<Drawn, Failure> {
+    let [_, _, width, height] = view.crop;
+    let needed = World::bytes_needed(model) + picture_bytes([width, height], view.data);
+    memory
+        .beside(model.bytes() as u64)
+        .ask(needed)
+        .map_err(|error| Failure::Usage(format!("tracing the scene needs {error}: raise --max-memory")))?;
     picture::trace(model, view, progress).map(Drawn::Traced).map_err(|_| Failure::Stopped)
 }
 
 /// The light of `strokes` over the photograph of `scene`, or over black.
-pub fn shine(scene: &Loaded, strokes: &[Stroke], max_memory: u64, progress: &Progress) -> Result<Shone, Failure> {
+pub fn shine(scene: &Loaded, strokes: &[Stroke], memory: &Memory, progress: &Progress) -> Result<Shone, Failure> {
     let recipe = &scene.recipe;
     let Some(backdrop) = &recipe.view else {
         return Err(Failure::Usage(format!("{} has no [view]: only such scenes shine", recipe.title)));
     };
-    let shone = Shone::new(backdrop, recipe.size, strokes, recipe.seed, max_memory, progress);
+    let shone = Shone::new(backdrop, recipe.size, strokes, recipe.seed, memory, progress);
     shone.map_err(|error| match error {
         ShoneError::Shine(ShineError::Cancelled(_)) => Failure::Stopped,
         ShoneError::Shine(ShineError::Scene { object, message }) => {

@@ -46,7 +46,7 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
             let drawn = draw(args, &jobs, job, &scene, is_exr(path), threads, console, &progress)?;
             if keep {
                 drawn.write(path, args, &scene)?;
-                report(path, job, &scene, begun, console);
+                report(path, &jobs, job, &scene, begun, console);
             }
             if args.sheet.is_none() && !args.show.contains(&Show::Terminal) {
                 continue;

@@ -21,7 +21,7 @@ use super::{pattern, shown};
 use crate::files::{ACESCG, Folder, REC709, Reads, decode_grey, decode_plate, set_chromaticities};
 use crate::glow::Pass;
 use crate::grow::Placement;
-use crate::math::{DVec2, Stream};
+use crate::math::{DVec2, Memory, Stream};
 use crate::model::BEYOND;
 use crate::picture::Shone;
 use crate::raster::{Grey, Plate, Samples};
@@ -45,8 +45,7 @@ pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
         (None, seed) => vec![seed],
     };
     let shots = shots(args, seeds.len())?;
-    let max_memory = args.limits.max_memory.unwrap_or_else(memory::default_limit);
-    memory::hold(max_memory);
+    let memory = memory::held(args.limits.max_memory);
     let track = args.track.as_ref().map(|path| Table::read(path, parse_place)).transpose()?;
     let number = |text: &str| match text.parse::<f64>() {
         Ok(x) if (0.0..1e6).contains(&x) => Ok(x),
@@ -98,8 +97,8 @@ pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
             (view.plate, view.matte) = (Some(Arc::clone(&plate)), matte.clone());
             let label = seed.map_or_else(|| source.name.clone(), |seed| format!("seed {seed}"));
             let progress = console.progress(&label);
-            let grown = scene::grow(&resolved, &[], max_memory, &progress)?;
-            let mut strokes = scene::model(&resolved, &grown, resolved.recipe.size, &progress)?.strokes;
+            let grown = scene::grow(&resolved, &[], &memory, &progress)?;
+            let mut strokes = scene::model(&resolved, &grown, resolved.recipe.size, &memory, &progress)?.strokes;
             let told = match (&intensity, shot.frame) {
                 (Some(table), Some(frame)) => table.at(f64::from(frame), |a, b, t| a + (b - a) * t),
                 _ => 1.0,
@@ -110,8 +109,8 @@ pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
                 stroke.glow.intensity *= told;
                 stroke.glow.exposure = args.exposure.unwrap_or(stroke.glow.exposure);
             }
-            let shone = shine(&resolved, &strokes, max_memory, &progress)?;
-            write(args, &shone, &resolved, shot, seed, begun, console)?;
+            let shone = shine(&resolved, &strokes, &memory, &progress)?;
+            write(args, &shone, &resolved, shot, seed, begun, &memory, console)?;
             if args.sheet.is_some() {
                 tiles.push(Tile { picture: shone.to_screen(), label });
             }
@@ -132,6 +131,7 @@ fn write(
     shot: &Shot,
     seed: Option<u64>,
     begun: Instant,
+    memory: &Memory,
     console: &Console,
 ) -> Result<(), Failure> {
     let software = format!("lichtenberg {}", env!("CARGO_PKG_VERSION"));
@@ -145,6 +145,7 @@ fn write(
                 "frame": shot.frame,
                 "size": scene.recipe.size,
                 "seconds": begun.elapsed().as_secs_f64(),
+                "memory": memory::told(memory),
             });
             output::tell(&file, details, console);
         }

@@ -175,13 +175,13 @@ fn once(
         if args.show.contains(&Show::Terminal) {
             terminal::show(&drawn.to_screen(), console)?;
         }
-        report(output, job, &scene, begun, console);
+        report(output, &jobs, job, &scene, begun, console);
         Ok(())
     };
     if args.with.is_some() || args.schematic || scene.recipe.view.is_some() {
         return finish(draw(args, &jobs, job, &scene, false, threads, console, progress)?);
     }
-    let fine = view(args, scene.recipe.size, is_exr(output), jobs.max_memory())?;
+    let fine = view(args, scene.recipe.size, is_exr(output), &jobs.memory)?;
     let model = jobs.model(&scene, &[], console, progress)?;
     let less = |x: u32| (x / COARSE).max(1);
     let size = fine.size.map(less);
@@ -189,6 +189,6 @@ fn once(
     let corner = [0, 1].map(|i| (fine.crop[i] / COARSE).min(size[i] - 1));
     let extent = [0, 1].map(|i| less(fine.crop[i + 2]).min(size[i] - corner[i]));
     let coarse = RenderSettings { size, crop: [corner[0], corner[1], extent[0], extent[1]], samples: 1, ..fine };
-    finish(trace(&model, &coarse, progress)?)?;
-    finish(trace(&model, &fine, progress)?)
+    finish(trace(&model, &coarse, &jobs.memory, progress)?)?;
+    finish(trace(&model, &fine, &jobs.memory, progress)?)
 }

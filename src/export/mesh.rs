@@ -2,10 +2,12 @@
 
 use std::io::{self, Write};
 
+use rustc_hash::FxHashMap;
+
 use super::decimal::plain_number;
 use super::identifier::plain;
 use crate::math::DVec3;
-use crate::model::{Digits, Mesh, Model, Object};
+use crate::model::{Digits, Mesh, Model, Object, Pose};
 
 /// Why a model is no mesh.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -18,45 +20,88 @@ pub enum NoMesh {
     TooMany(usize),
 }
 
-/// More triangles than this are refused: each takes about 200 bytes on its way.
+/// More triangles than this are refused.
 const MOST_FACES: usize = 20_000_000;
+/// Bytes of a corner in the table of those that are known, which is half empty at worst while it grows.
+const KNOWN_BYTES: u64 = 3 * (size_of::<[u64; 3]>() + size_of::<u32>()) as u64;
 
-/// A triangle's corners in the world, and their places in a texture, if there are any.
-type Face = ([DVec3; 3], Option<[[f64; 2]; 3]>);
+/// An object as triangles, wherever it stands.
+struct Faces<'a> {
+    object: &'a Object,
+    mesh: &'a Mesh,
+    poses: Vec<Option<&'a Pose>>,
+}
 
-/// An object's name, the digits of its numbers, and its faces.
-type Named<'a> = (&'a str, Digits, Vec<Face>);
+/// The places in a texture of a triangle's corners.
+type Places = [[f64; 2]; 3];
 
-/// All faces of each object, wherever it stands.
-fn objects(model: &Model) -> Result<Vec<Named<'_>>, NoMesh> {
-    let mut meshes = Vec::new();
+impl<'a> Faces<'a> {
+    /// Every triangle: its corners in the world, rounded, and their places in a texture, if there are any.
+    fn each(&self) -> impl Iterator<Item = ([DVec3; 3], Option<&'a Places>)> {
+        let Self { object, mesh, poses } = self;
+        let stands = object.instances.iter().flat_map(move |place| poses.iter().map(move |pose| (place, pose)));
+        stands.flat_map(move |(place, pose)| {
+            (0..).zip(&mesh.triangles).map(move |(i, triangle)| {
+                let corner = |corner: u32| {
+                    let p = mesh.points[corner as usize];
+                    object.digits.round_point(place.to_world(pose.map_or(p, |pose| pose.to_object(p))))
+                };
+                (triangle.map(corner), mesh.uvs.get(i))
+            })
+        })
+    }
+
+    /// How many times it stands.
+    fn places(&self) -> usize {
+        self.poses.len() * self.object.instances.len()
+    }
+}
+
+/// Every object as triangles.
+fn objects(model: &Model) -> Result<Vec<Faces<'_>>, NoMesh> {
+    let mut all = Vec::new();
     for object in &model.objects {
         let (mesh, poses) = object.body.mesh().ok_or_else(|| NoMesh::Cones(object.name.clone()))?;
-        meshes.push((object, mesh, poses));
+        all.push(Faces { object, mesh, poses });
     }
-    let faces =
-        |(object, mesh, poses): &(&Object, &Mesh, Vec<_>)| mesh.triangles.len() * poses.len() * object.instances.len();
-    let count: usize = meshes.iter().map(faces).sum();
-    if count > MOST_FACES {
-        return Err(NoMesh::TooMany(count));
+    let count = all.iter().map(|faces| faces.mesh.triangles.len() * faces.places()).sum();
+    if count > MOST_FACES { Err(NoMesh::TooMany(count)) } else { Ok(all) }
+}
+
+/// Bytes that [`write_obj`] takes for each object of `model` at its peak; none where that is no mesh.
+fn bytes_of_objects(model: &Model) -> impl Iterator<Item = u64> {
+    let of = |faces: &Faces<'_>| {
+        let (corners, triangles) = (faces.mesh.points.len() as u64, faces.mesh.triangles.len() as u64);
+        (corners * KNOWN_BYTES + triangles * size_of::<[u32; 3]>() as u64) * faces.places() as u64
+    };
+    objects(model).unwrap_or_default().into_iter().map(move |faces| of(&faces))
+}
+
+/// Bytes that [`write_obj`] takes for `model` at its peak.
+#[must_use]
+pub fn obj_bytes_needed(model: &Model) -> u64 {
+    bytes_of_objects(model).max().unwrap_or(0)
+}
+
+/// Bytes that [`write_ply`] takes for `model` at its peak.
+#[must_use]
+pub fn ply_bytes_needed(model: &Model) -> u64 {
+    // It keeps the corners of all, in order too.
+    let list = 1.0 + (size_of::<(DVec3, Digits)>() as f64) / KNOWN_BYTES as f64;
+    (bytes_of_objects(model).sum::<u64>() as f64 * list) as u64
+}
+
+/// Corners by place, numbered from 0 on.
+#[derive(Default)]
+struct Corners(FxHashMap<[u64; 3], u32>);
+
+impl Corners {
+    /// The number of the corner at `p`, and whether it is a new one.
+    fn number(&mut self, p: DVec3) -> (u32, bool) {
+        let next = self.0.len() as u32;
+        let number = *self.0.entry(p.to_array().map(f64::to_bits)).or_insert(next);
+        (number, number == next)
     }
-    let mut all = Vec::new();
-    for (object, mesh, poses) in meshes {
-        let mut faces: Vec<Face> = Vec::new();
-        for place in &object.instances {
-            for pose in &poses {
-                for (i, triangle) in mesh.triangles.iter().enumerate() {
-                    let corners = triangle.map(|corner| {
-                        let p = mesh.points[corner as usize];
-                        place.to_world(pose.map_or(p, |pose| pose.to_object(p)))
-                    });
-                    faces.push((corners, mesh.uvs.get(i).copied()));
-                }
-            }
-        }
-        all.push((object.name.as_str(), object.digits, faces));
-    }
-    Ok(all)
 }
 
 /// Writes a Wavefront OBJ: y up, as usual there, an object each, with texture coordinates where limbs have them. Corners in
@@ -67,37 +112,37 @@ fn objects(model: &Model) -> Result<Vec<Named<'_>>, NoMesh> {
 pub fn write_obj(model: &Model, mut out: impl Write) -> io::Result<()> {
     let objects = objects(model).map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
     writeln!(out, "# {}", plain(&model.title))?;
-    let (mut corners, mut places) = (0, 0);
-    for (name, digits, faces) in objects {
-        writeln!(out, "o {name}")?;
-        let mut known = std::collections::HashMap::new();
-        let mut lines = Vec::new();
-        for (points, uvs) in faces {
-            let mut line = String::from("f");
-            for (i, p) in points.into_iter().enumerate() {
-                let p = digits.round_point(p);
-                let index = match known.get(&p.to_array().map(f64::to_bits)) {
-                    Some(&index) => index,
-                    None => {
-                        corners += 1;
-                        let [x, y, z] = [p.x, p.z, -p.y].map(|c| plain_number(c, digits));
-                        writeln!(out, "v {x} {y} {z}")?;
-                        known.insert(p.to_array().map(f64::to_bits), corners);
-                        corners
-                    }
-                };
-                line.push_str(&format!(" {index}"));
+    // What came before: corners, and places in textures.
+    let (mut first, mut placed) = (1, 0);
+    for faces in objects {
+        let digits = faces.object.digits;
+        writeln!(out, "o {}", faces.object.name)?;
+        let mut known = Corners::default();
+        let mut triangles: Vec<[u32; 3]> = Vec::new();
+        for (corners, uvs) in faces.each() {
+            let mut triangle = [0; 3];
+            for (i, p) in corners.into_iter().enumerate() {
+                let (number, is_new) = known.number(p);
+                if is_new {
+                    let [x, y, z] = [p.x, p.z, -p.y].map(|c| plain_number(c, digits));
+                    writeln!(out, "v {x} {y} {z}")?;
+                }
+                triangle[i] = first + number;
                 if let Some(uvs) = uvs {
-                    places += 1;
                     let [u, v] = uvs[i].map(|x| plain_number(x, Digits(5)));
                     writeln!(out, "vt {u} {v}")?;
-                    line.push_str(&format!("/{places}"));
                 }
             }
-            lines.push(line);
+            triangles.push(triangle);
         }
-        for line in lines {
-            writeln!(out, "{line}")?;
+        first += known.0.len() as u32;
+        for ([a, b, c], i) in triangles.into_iter().zip((0..faces.mesh.triangles.len()).cycle()) {
+            if i < faces.mesh.uvs.len() {
+                writeln!(out, "f {a}/{} {b}/{} {c}/{}", placed + 1, placed + 2, placed + 3)?;
+                placed += 3;
+            } else {
+                writeln!(out, "f {a} {b} {c}")?;
+            }
         }
     }
     Ok(())
@@ -109,17 +154,17 @@ pub fn write_obj(model: &Model, mut out: impl Write) -> io::Result<()> {
 /// As [`write_obj`].
 pub fn write_ply(model: &Model, mut out: impl Write) -> io::Result<()> {
     let objects = objects(model).map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
-    let mut known = std::collections::HashMap::new();
+    let mut known = Corners::default();
     let mut points: Vec<(DVec3, Digits)> = Vec::new();
-    let mut triangles: Vec<[usize; 3]> = Vec::new();
-    for (_, digits, faces) in objects {
-        for (corners, _) in faces {
+    let mut triangles: Vec<[u32; 3]> = Vec::new();
+    for faces in objects {
+        for (corners, _) in faces.each() {
             triangles.push(corners.map(|p| {
-                let p = digits.round_point(p);
-                *known.entry(p.to_array().map(f64::to_bits)).or_insert_with(|| {
-                    points.push((p, digits));
-                    points.len() - 1
-                })
+                let (number, is_new) = known.number(p);
+                if is_new {
+                    points.push((p, faces.object.digits));
+                }
+                number
             }));
         }
     }

@@ -21,7 +21,7 @@ mod svg;
 mod templates;
 
 pub use identifier::identifier;
-pub use mesh::{NoMesh, write_obj, write_ply};
+pub use mesh::{NoMesh, obj_bytes_needed, ply_bytes_needed, write_obj, write_ply};
 pub use origin::Origin;
 pub use pov::Pov;
 pub use rib::Rib;

@@ -5,6 +5,7 @@ use std::io::{self, Write};
 
 use super::rib_body::write_object;
 use super::rib_options::RibOptions;
+use super::rib_sheets::sheet_bytes_needed;
 use super::rib_values::{RibValues, has_casters, values};
 use super::{Origin, TemplateError, Templates};
 use crate::model::{Light, Model, Object, Pattern};
@@ -29,6 +30,12 @@ impl<'a> Rib<'a> {
         options: RibOptions,
     ) -> Self {
         Self { model, templates, options, values: values(model, name, size, origin, options) }
+    }
+
+    /// Bytes that its texts take for a picture of `size` pixels, besides what is streamed.
+    #[must_use]
+    pub fn bytes_needed(model: &Model, size: [u32; 2]) -> u64 {
+        sheet_bytes_needed(model, size)
     }
 
     /// The text of `NAME.rib`, without the line that tells whether it was edited.

@@ -13,6 +13,8 @@ const SQUARES: [u32; 2] = [16, 48];
 /// Pixels along a square of a sky that is a picture, and most squares along a side.
 const PIXELS: u32 = 4;
 const MOST_SQUARES: u32 = 400;
+/// Bytes of a corner as text, about: its place, its colour, its number.
+const CORNER_TEXT: u64 = 100;
 /// The sky stands at so many times the distance of the farthest of the scene.
 const BEHIND: f64 = 1.2;
 
@@ -34,11 +36,7 @@ pub(super) fn sheets(model: &Model, size: [u32; 2], digits: Digits) -> Vec<Sheet
     let far = model.bounds().corners().map(|p| depth(camera, p)).into_iter();
     let far = far.chain(ground.as_ref().map(|sheet| sheet.far));
     let wall = far.fold((camera.look_at - camera.at).length(), f64::max) * BEHIND;
-    let count = match model.sky {
-        Sky::Gradient { horizon, zenith } if horizon == zenith => [1, 1],
-        Sky::Gradient { .. } => SQUARES,
-        Sky::Picture { .. } => size.map(|side| (side / PIXELS).clamp(1, MOST_SQUARES)),
-    };
+    let count = sky_squares(model, size);
     let mut grid = Grid::default();
     for square in squares(count, size) {
         let rays = square.map(|[x, y]| ray(camera, x, y));
@@ -50,6 +48,22 @@ pub(super) fn sheets(model: &Model, size: [u32; 2], digits: Digits) -> Vec<Sheet
     let surface = "Surface \"constant\"".to_owned();
     let sky = Sheet { name: "sky", surface, body: grid.text(digits), far: wall };
     std::iter::once(sky).chain(ground).collect()
+}
+
+/// Squares across and down the sky.
+fn sky_squares(model: &Model, size: [u32; 2]) -> [u32; 2] {
+    match model.sky {
+        Sky::Gradient { horizon, zenith } if horizon == zenith => [1, 1],
+        Sky::Gradient { .. } => SQUARES,
+        Sky::Picture { .. } => size.map(|side| (side / PIXELS).clamp(1, MOST_SQUARES)),
+    }
+}
+
+/// Bytes that sheets take, and the text that they are a part of: it is filled in, and sealed.
+pub(super) fn sheet_bytes_needed(model: &Model, size: [u32; 2]) -> u64 {
+    let [across, down] = sky_squares(model, size).map(u64::from);
+    let corners = 4 * (across * down + u64::from(SQUARES[0] * SQUARES[1]));
+    corners * (size_of::<(DVec3, Colour)>() as u64 + 4 * CORNER_TEXT)
 }
 
 /// The part of the ground that the camera sees.
@@ -155,17 +169,20 @@ impl Grid {
     }
 
     fn text(&self, digits: Digits) -> String {
-        let counts: Vec<String> = self.counts.iter().map(usize::to_string).collect();
-        let corners: Vec<String> = (0..self.corners.len()).map(|i| i.to_string()).collect();
-        let points: Vec<String> = self.corners.iter().map(|&(p, _)| triple(p, digits)).collect();
-        let colours: Vec<String> = self.corners.iter().map(|&(_, c)| colour(c)).collect();
-        format!(
-            "PointsPolygons [{}]\n[{}]\n\"P\" [{}]\n\"Cs\" [{}]",
-            counts.join(" "),
-            corners.join(" "),
-            points.join("\n"),
-            colours.join("\n")
-        )
+        let mut text = String::new();
+        let mut list = |head: &str, gap: &str, items: &mut dyn Iterator<Item = String>| {
+            text.push_str(head);
+            for (i, item) in items.enumerate() {
+                text.push_str(if i > 0 { gap } else { "" });
+                text.push_str(&item);
+            }
+            text.push(']');
+        };
+        list("PointsPolygons [", " ", &mut self.counts.iter().map(usize::to_string));
+        list("\n[", " ", &mut (0..self.corners.len()).map(|i| i.to_string()));
+        list("\n\"P\" [", "\n", &mut self.corners.iter().map(|&(p, _)| triple(p, digits)));
+        list("\n\"Cs\" [", "\n", &mut self.corners.iter().map(|&(_, c)| colour(c)));
+        text
     }
 }
 

@@ -1,6 +1,11 @@
 //! Axis-aligned bounding boxes.
 
-use crate::math::DVec3;
+use rand::RngExt;
+
+use crate::math::{DVec3, Stream};
+
+/// Places that [`Bounds::share`] looks at.
+const SAMPLES: u32 = 4096;
 
 /// An axis-aligned bounding box.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,6 +66,14 @@ impl Bounds {
     #[must_use]
     pub fn centre(&self) -> DVec3 {
         (self.min + self.max) * 0.5
+    }
+
+    /// The share of it where `is_in` holds, of 4096 places at random.
+    #[must_use]
+    pub fn share(&self, is_in: impl Fn(DVec3) -> bool) -> f64 {
+        let mut random = Stream::new(0, "share");
+        let mut place = || self.min + self.size() * DVec3::from_array(std::array::from_fn(|_| random.random()));
+        (0..SAMPLES).filter(|_| is_in(place())).count() as f64 / f64::from(SAMPLES)
     }
 
     /// Its eight corners.

@@ -12,6 +12,12 @@ pub struct Surface {
 }
 
 impl Surface {
+    /// Bytes in memory.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.points[..]) + size_of_val(&self.triangles[..])
+    }
+
     /// The corners of a triangle.
     fn corners(&self, triangle: &[u32; 3]) -> [DVec3; 3] {
         corners(&self.points, triangle)

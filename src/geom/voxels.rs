@@ -34,6 +34,16 @@ impl Voxels {
         Self { size, spacing, low, distances }
     }
 
+    /// Bytes that a sample takes at the peak of [`Voxels::new`]: what is inside and outside, transformed, along z once more, and
+    /// the result.
+    pub const SAMPLE_BYTES: usize = 5 * size_of::<f32>();
+
+    /// Bytes in memory.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.distances[..])
+    }
+
     fn at(&self, x: usize, y: usize, z: usize) -> f64 {
         f64::from(self.distances[x + self.size[0] * (y + self.size[1] * z)])
     }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::Canvas;
 use crate::graph::{Graph, Lattice, LatticeError, Node, Window};
-use crate::math::{DVec2, Progress, Stream};
+use crate::math::{DVec2, Memory, OutOfMemory, Progress, Stream};
 use crate::model::Stroke;
 use crate::plan::{Goal, PlanError, mean_cost, plan};
 
@@ -22,17 +22,8 @@ pub(super) enum NearError {
     #[error(transparent)]
     Lattice(#[from] LatticeError),
     /// The lattice exceeds the memory limit.
-    #[error(
-        "its lattice of {nodes} nodes needs about {needed} MB of memory, more than the {allowed} MB allowed: use a coarser `grain`"
-    )]
-    Memory {
-        /// Nodes of the lattice.
-        nodes: u64,
-        /// Megabytes that it needs.
-        needed: u64,
-        /// Megabytes allowed.
-        allowed: u64,
-    },
+    #[error("its lattice of {0} nodes needs {1}: use a coarser `grain`")]
+    Memory(u64, OutOfMemory),
     /// The search failed or was cancelled.
     #[error(transparent)]
     Plan(#[from] PlanError),
@@ -44,8 +35,7 @@ pub(super) struct NearParameters<'a> {
     pub stroke: &'a Stroke,
     pub canvas: &'a Canvas,
     pub seed: u64,
-    /// Memory limit, in bytes.
-    pub max_memory: u64,
+    pub memory: &'a Memory,
     pub progress: &'a Progress,
 }
 
@@ -98,13 +88,7 @@ impl NearParameters<'_> {
         let [low, high] = [corners[0] - margin, corners[1] + margin].map(|p| p.extend(0.0));
         let window = Window::new(low, high, spacing, 2)?;
         let needed = window.nodes().saturating_mul(NODE_BYTES);
-        if needed > self.max_memory {
-            return Err(NearError::Memory {
-                nodes: window.nodes(),
-                needed: needed.div_ceil(1_000_000),
-                allowed: self.max_memory / 1_000_000,
-            });
-        }
+        self.memory.ask(needed).map_err(|error| NearError::Memory(window.nodes(), error))?;
         Ok(window)
     }
 
@@ -179,7 +163,7 @@ mod tests {
                     stroke: &stroke,
                     canvas: &canvas,
                     seed: 1,
-                    max_memory: 1 << 30,
+                    memory: &Memory::default(),
                     progress: &progress,
                 };
                 let field = parameters.field(true).unwrap();

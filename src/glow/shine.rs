@@ -8,7 +8,7 @@ use super::coverage::cover;
 use super::near::{NearError, NearField, NearParameters};
 use super::scatter::Scattering;
 use super::temperature::black_body;
-use crate::math::{Cancelled, DVec2, Progress, power};
+use crate::math::{Cancelled, DVec2, Memory, Progress, power};
 use crate::model::{GlowSpec, Stroke};
 use crate::plan::PlanError;
 
@@ -79,7 +79,7 @@ pub enum ShineError {
 }
 
 /// The layers of light of `strokes` on `canvas`, of the scene with this seed; strokes of equal temperature share layers. Lattices
-/// of glows take at most `max_memory` bytes.
+/// of glows ask for their `memory`.
 ///
 /// # Errors
 /// [`ShineError`].
@@ -88,7 +88,7 @@ pub fn shine(
     canvas: &Canvas,
     has_plate: bool,
     seed: u64,
-    max_memory: u64,
+    memory: &Memory,
     progress: &Progress,
 ) -> Result<Vec<Layer>, ShineError> {
     let mut layers: Vec<Layer> = Vec::new();
@@ -113,7 +113,7 @@ pub fn shine(
             }
         }
         if glow.near.strength * light > 0.0 && !stroke.pieces.is_empty() {
-            let parameters = NearParameters { stroke, canvas, seed, max_memory, progress };
+            let parameters = NearParameters { stroke, canvas, seed, memory, progress };
             add(Pass::Glow, near(&parameters, (glow.near.strength * light) as f32)?);
         }
         let has_halo = glow.halo.strength > 0.0;

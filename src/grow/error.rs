@@ -1,7 +1,7 @@
 //! Why a step did not grow: the step, the part of it, and the reason.
 
 use crate::graph::{LatticeError, ScatterError, WeightError};
-use crate::math::{Cancelled, DVec3};
+use crate::math::{Cancelled, DVec3, OutOfMemory};
 use crate::plan::PlanError;
 
 /// Why a step did not grow.
@@ -17,6 +17,9 @@ pub enum GrowError {
         /// What is wrong and what would be right.
         problem: Problem,
     },
+    /// It takes more memory than allowed.
+    #[error(transparent)]
+    Memory(#[from] OutOfMemory),
     /// Stopped by its [`crate::math::Progress`].
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

@@ -35,6 +35,15 @@ pub struct Grown {
     pub regions: Option<Regions>,
 }
 
+impl Grown {
+    /// Bytes in memory, about.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let marks = self.marks.iter().map(|mark| size_of_val(&mark.line[..])).sum::<usize>();
+        self.skeleton.bytes() + marks + self.regions.as_ref().map_or(0, Regions::bytes)
+    }
+}
+
 /// Which part of a step others grow from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {

@@ -12,7 +12,7 @@ use super::rounds::Repeat;
 use super::space::Space;
 use super::spaces::LatticeSpace;
 use crate::geom::{MarkKind, Shape};
-use crate::math::{DVec3, Progress};
+use crate::math::{DVec3, Memory, Progress};
 use crate::plan::PlanError;
 use crate::skeleton::{Form, Skeleton, SymmetrySpec, Width};
 
@@ -86,6 +86,8 @@ pub struct Context<'a> {
     pub grown: &'a [Option<&'a Skeleton>],
     /// What construction drawings are to show.
     pub show: &'a [MarkKind],
+    /// What may be taken.
+    pub memory: &'a Memory,
     /// Progress and cancelling.
     pub progress: &'a Progress,
 }

@@ -1,10 +1,11 @@
-//! Vectors (re-exported from `glam`), counter-based random streams, names, and the handle by which
-//! long work reports progress and is cancelled.
+//! Vectors (re-exported from `glam`), counter-based random streams, names, and the handles by which
+//! long work reports progress, is cancelled, and asks for memory.
 //!
 //! Later stages need never handle platform differences: everything here gives the same bits everywhere.
 
 mod checksum;
 mod direction;
+mod memory;
 mod name;
 mod per_round;
 mod power;
@@ -20,6 +21,7 @@ pub use glam::{DMat3, DVec2, DVec3};
 
 pub use checksum::fnv1a;
 pub use direction::{GOLDEN_ANGLE, from_height, from_polar, from_sin_cos};
+pub use memory::{Memory, OutOfMemory};
 pub use name::{Colour, Degrees, Point, Ref, unknown};
 pub use per_round::PerRound;
 pub use power::power;

@@ -94,6 +94,16 @@ impl Body {
         }
     }
 
+    /// Bytes in memory.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        match self {
+            Self::Limbs(limbs) => size_of_val(&limbs.balls[..]) + size_of_val(&limbs.segments[..]),
+            Self::Mesh(mesh) => mesh.bytes(),
+            Self::Posed(mesh, poses) => mesh.bytes() + size_of_val(&poses[..]),
+        }
+    }
+
     /// How many limbs [`Ball::branch`] tells apart; a mesh is one.
     #[must_use]
     pub fn branches(&self) -> u32 {
@@ -150,6 +160,15 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Bytes in memory.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.points[..])
+            + size_of_val(&self.normals[..])
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.uvs[..])
+    }
+
     /// Gives each corner the normal of the triangles around it, by their area.
     pub fn smooth(&mut self) {
         self.normals = vertex_normals(&self.points, &self.triangles);

@@ -36,6 +36,13 @@ impl Model {
         self.objects.iter().map(Object::bounds).fold(Bounds::EMPTY, Bounds::union)
     }
 
+    /// Bytes of its objects in memory.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let bytes = |object: &Object| object.body.bytes() + size_of_val(&object.instances[..]);
+        self.objects.iter().map(bytes).sum()
+    }
+
     /// How many spheres, cones and triangles there are, once for each object.
     #[must_use]
     pub fn primitives(&self) -> usize {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::assemble::Backdrop;
 use crate::files::{ExrHead, PngHead, REC709, Rgba, encode_exr_rows, encode_png_rows};
 use crate::glow::{Canvas, Composite, Layer, Pass, ShineError, shine};
-use crate::math::Progress;
+use crate::math::{Memory, OutOfMemory, Progress};
 use crate::model::Stroke;
 use crate::raster::{DataWindow, Grey, Plate, Samples};
 
@@ -37,17 +37,12 @@ pub enum Depth {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ShoneError {
     /// It would take more memory than allowed.
-    #[error(
-        "a picture of {} by {} pixels needs about {} MB of memory, more than the {} MB allowed: raise --max-memory",
-        size[0], size[1], needed.div_ceil(1_000_000), limit / 1_000_000
-    )]
+    #[error("a picture of {} by {} pixels needs {error}: raise --max-memory", size[0], size[1])]
     Memory {
         /// Its pixels.
         size: [u32; 2],
-        /// Bytes that it needs.
-        needed: u64,
-        /// Bytes that it may take.
-        limit: u64,
+        /// What it needs.
+        error: OutOfMemory,
     },
     /// A stroke cannot shine.
     #[error(transparent)]
@@ -64,7 +59,7 @@ impl Shone {
         size: [u32; 2],
         strokes: &[Stroke],
         seed: u64,
-        max_memory: u64,
+        memory: &Memory,
         progress: &Progress,
     ) -> Result<Self, ShoneError> {
         let mut canvas = Canvas::new(backdrop.frame, size);
@@ -72,10 +67,8 @@ impl Shone {
             (canvas.size, canvas.offset) = (plate.size, plate.offset());
         }
         let needed = canvas.pixels() as u64 * PIXEL_BYTES;
-        if needed > max_memory {
-            return Err(ShoneError::Memory { size: canvas.size, needed, limit: max_memory });
-        }
-        let layers = shine(strokes, &canvas, backdrop.plate.is_some(), seed, max_memory, progress)?;
+        memory.ask(needed).map_err(|error| ShoneError::Memory { size: canvas.size, error })?;
+        let layers = shine(strokes, &canvas, backdrop.plate.is_some(), seed, memory, progress)?;
         Ok(Self { canvas, plate: backdrop.plate.clone(), matte: backdrop.matte.clone(), layers })
     }
 

@@ -9,7 +9,7 @@ use super::tree::Entry;
 use crate::assemble::{self, AssembleError, ObjectKey, Recipe};
 use crate::geom::MarkKind;
 use crate::grow::{GrowError, Grown, Key, Step};
-use crate::math::{Cancelled, Progress};
+use crate::math::{Cancelled, Memory, Progress};
 use crate::model::Model;
 
 /// A scene that was read.
@@ -74,7 +74,7 @@ impl Loaded {
     pub fn place(&self, error: AssembleError) -> Stage {
         let (place, message) = match &error {
             AssembleError::Cancelled(cancelled) => return Stage::Cancelled(*cancelled),
-            AssembleError::Memory { .. } => return Stage::Memory(error),
+            AssembleError::Memory(_) | AssembleError::Grow(GrowError::Memory(_)) => return Stage::Memory(error),
             AssembleError::Grow(GrowError::Cancelled(cancelled)) => return Stage::Cancelled(*cancelled),
             AssembleError::Grow(GrowError::Step { step, key, problem }) => {
                 (self.place_in_step(step, key), problem.to_string())
@@ -116,13 +116,13 @@ impl Loaded {
     }
 }
 
-/// Looks for everything that keeps `scene` from growing within `max_memory` bytes, as far as that is known before.
+/// Looks for everything that keeps `scene` from growing within `memory`, as far as that is known before.
 ///
 /// # Errors
 /// [`Stage`]: what [`assemble::check`] finds, at its places in the scene.
-pub fn check(scene: &Loaded, max_memory: u64, progress: &Progress) -> Result<(), Stage> {
+pub fn check(scene: &Loaded, memory: &Memory, progress: &Progress) -> Result<(), Stage> {
     let mut mistakes = Vec::new();
-    for error in assemble::check(&scene.recipe, max_memory, progress) {
+    for error in assemble::check(&scene.recipe, memory, progress) {
         match scene.place(error) {
             Stage::Scene(error) => mistakes.extend(error.mistakes),
             other => return Err(other),
@@ -131,18 +131,24 @@ pub fn check(scene: &Loaded, max_memory: u64, progress: &Progress) -> Result<(),
     if mistakes.is_empty() { Ok(()) } else { Err(SceneError::new(&scene.source, mistakes).into()) }
 }
 
-/// Grows every step of `scene` within `max_memory` bytes; `show` lists what construction drawings need.
+/// Grows every step of `scene` within `memory`; `show` lists what construction drawings need.
 ///
 /// # Errors
 /// [`Stage`]: what [`assemble::grow`] says, at its place in the scene.
-pub fn grow(scene: &Loaded, show: &[MarkKind], max_memory: u64, progress: &Progress) -> Result<Vec<Grown>, Stage> {
-    assemble::grow(&scene.recipe, show, max_memory, progress).map_err(|error| scene.place(error))
+pub fn grow(scene: &Loaded, show: &[MarkKind], memory: &Memory, progress: &Progress) -> Result<Vec<Grown>, Stage> {
+    assemble::grow(&scene.recipe, show, memory, progress).map_err(|error| scene.place(error))
 }
 
-/// The model of `scene` from what its steps yielded, for a picture of `size` pixels.
+/// The model of `scene` from what its steps yielded, for a picture of `size` pixels, within `memory`.
 ///
 /// # Errors
 /// [`Stage`]: what [`assemble::model`] says, at its place in the scene.
-pub fn model(scene: &Loaded, grown: &[Grown], size: [u32; 2], progress: &Progress) -> Result<Model, Stage> {
-    assemble::model(&scene.recipe, grown, size, progress).map_err(|error| scene.place(error))
+pub fn model(
+    scene: &Loaded,
+    grown: &[Grown],
+    size: [u32; 2],
+    memory: &Memory,
+    progress: &Progress,
+) -> Result<Model, Stage> {
+    assemble::model(&scene.recipe, grown, size, memory, progress).map_err(|error| scene.place(error))
 }

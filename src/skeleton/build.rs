@@ -199,6 +199,19 @@ impl Skeleton {
         (position - self.nodes[parent? as usize].position).try_normalize()
     }
 
+    /// Bytes in memory.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.nodes.len() * size_of::<SkeletonNode>() + self.paths.len() * size_of::<Path>()
+    }
+
+    /// The area of its surface, each segment as a cone cut off at its nodes.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        let segments = self.nodes.iter().filter_map(|node| Some((&self.nodes[node.parent? as usize], node)));
+        segments.map(|(a, b)| std::f64::consts::PI * (a.radius + b.radius) * a.position.distance(b.position)).sum()
+    }
+
     /// The limb that each path adds to the earlier ones.
     #[must_use]
     pub fn limbs(&self) -> Vec<Limb> {

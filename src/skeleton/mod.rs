@@ -26,6 +26,6 @@ pub use order::Orders;
 pub use plant::{Plant, PlantPart};
 pub use relate::{apart, crossings, floating, nearest, shared_ends};
 pub use smooth::smooth;
-pub use spline::{bend, overlap};
+pub use spline::{bend, overlap, overlap_count};
 pub use symmetry::SymmetrySpec;
 pub use width::{ByLength, PerClass, Pipe, Taper, Width, WidthError};

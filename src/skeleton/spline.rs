@@ -34,15 +34,24 @@ pub fn bend(skeleton: &Skeleton) -> Skeleton {
 /// segment has at most `most` pieces.
 #[must_use]
 pub fn overlap(skeleton: &Skeleton, share: f64, most: u32) -> Skeleton {
-    resample(
-        skeleton,
-        |from, to, _| {
-            let gap = from.radius.min(to.radius) * share;
-            let pieces = (to.position - from.position).length() / gap;
-            if pieces.is_finite() { libm::ceil(pieces).min(f64::from(most)) as u32 } else { most }
-        },
-        most,
-    )
+    resample(skeleton, |from, to, _| overlap_pieces(from, to, share, most), most)
+}
+
+/// How many nodes [`overlap`] yields.
+#[must_use]
+pub fn overlap_count(skeleton: &Skeleton, share: f64, most: u32) -> u64 {
+    let pieces = |node: &SkeletonNode| {
+        let from = node.parent.map(|parent| &skeleton.nodes[parent as usize]);
+        u64::from(from.map_or(1, |from| overlap_pieces(from, node, share, most).clamp(1, most)))
+    };
+    skeleton.nodes.iter().map(pieces).sum()
+}
+
+/// Pieces of a segment that are no longer than `share` of the lesser radius.
+fn overlap_pieces(from: &SkeletonNode, to: &SkeletonNode, share: f64, most: u32) -> u32 {
+    let gap = from.radius.min(to.radius) * share;
+    let pieces = (to.position - from.position).length() / gap;
+    if pieces.is_finite() { libm::ceil(pieces).min(f64::from(most)) as u32 } else { most }
 }
 
 /// Divides the segment to each node into `pieces` pieces, along a Catmull-Rom spline through the nodes of its limb; cost and

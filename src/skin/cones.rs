@@ -3,7 +3,7 @@
 use super::foot;
 use crate::math::{DVec3, tolerance::INVISIBLE_RADIUS};
 use crate::model::{Ball, Body, BodyError, Digits, Limbs, Object, to_world};
-use crate::skeleton::{Skeleton, overlap};
+use crate::skeleton::{Skeleton, overlap, overlap_count};
 
 /// Spheres stand no further apart than this share of the smaller radius: their union then dips by 3 % of it.
 const SPHERE_GAP: f64 = 0.5;
@@ -43,6 +43,11 @@ pub fn spheres(
     Ok(Object::new(name, Body::Limbs(limbs), to_world(root + offset, is_flat), digits, material))
 }
 
+/// How many spheres [`spheres`] has for `skeleton`.
+pub(super) fn count_overlapping(skeleton: &Skeleton) -> u64 {
+    overlap_count(skeleton, SPHERE_GAP, MOST_SPHERES)
+}
+
 /// A ball for each node, measured from `root`, and with `joined` a segment to its parent.
 fn limbs(skeletons: &[&Skeleton], root: DVec3, is_flat: bool, joined: bool) -> Result<(Limbs, Digits), BodyError> {
     let size = skeletons
@@ -52,9 +57,9 @@ fn limbs(skeletons: &[&Skeleton], root: DVec3, is_flat: bool, joined: bool) -> R
         .fold(0.0, f64::max);
     BodyError::check_size(size)?;
     let digits = Digits::for_size(size);
-    let count = skeletons.iter().map(|s| s.nodes.len()).sum::<usize>() * (1 + usize::from(joined));
-    BodyError::check_count(count)?;
-    let mut limbs = Limbs { balls: Vec::with_capacity(count), ..Limbs::default() };
+    let nodes = skeletons.iter().map(|s| s.nodes.len()).sum::<usize>();
+    BodyError::check_count(nodes * (1 + usize::from(joined)))?;
+    let mut limbs = Limbs { balls: Vec::with_capacity(nodes), ..Limbs::default() };
     let mut branches = 0;
     for skeleton in skeletons {
         let first = limbs.balls.len() as u32;

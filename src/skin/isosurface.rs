@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::geom::{Bounds, Surface, fill};
 use crate::graph::{Graph, LatticeError, Node, Window};
 use crate::grow::LatticeSpace;
-use crate::math::{Cancelled, DVec2, DVec3, Progress};
+use crate::math::{Cancelled, DVec2, DVec3, Memory, OutOfMemory, Progress};
 use crate::plan::{Goal, PlanError, mean_cost, plan_from};
 use crate::raster::rings;
 use crate::skeleton::Skeleton;
@@ -47,6 +47,10 @@ pub enum Distance {
 
 /// More samples than this are refused.
 const MOST_SAMPLES: f64 = 3e8;
+/// Bytes of a sample of distance, and of one of path cost.
+const SAMPLE_BYTES: [f64; 2] = [4.0, 8.0];
+/// Bytes that a square of the surface as wide as the spacing takes: a corner, two triangles, normals, while they are copied.
+const SQUARE_BYTES: f64 = 250.0;
 
 /// Why there is no surface.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -78,6 +82,9 @@ pub enum IsosurfaceError {
     /// No cost is low enough.
     #[error("no node lies within the width of the limbs: make them wider, or the spacing narrower")]
     NoNode,
+    /// The grid takes more memory than allowed.
+    #[error("its grid needs {0}: use a wider spacing, or raise --max-memory")]
+    Memory(#[from] OutOfMemory),
     /// Stopped by its [`Progress`].
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -88,7 +95,9 @@ impl IsosurfaceError {
     #[must_use]
     pub fn key(&self) -> &'static str {
         match self {
-            Self::TooManySamples(_) | Self::Window(_) | Self::Narrow(_) | Self::OwnSpacing => "spacing",
+            Self::TooManySamples(_) | Self::Memory(_) | Self::Window(_) | Self::Narrow(_) | Self::OwnSpacing => {
+                "spacing"
+            }
             _ => "of",
         }
     }
@@ -104,10 +113,11 @@ pub fn isosurface(
     space: Option<&LatticeSpace>,
     is_flat: bool,
     seed: u64,
+    memory: &Memory,
     progress: &Progress,
 ) -> Result<Surface, IsosurfaceError> {
     match spec.of {
-        Distance::Euclidean => by_distance(spec, skeletons, space, is_flat, progress),
+        Distance::Euclidean => by_distance(spec, skeletons, space, is_flat, memory, progress),
         Distance::Cost => {
             let space = space.ok_or(IsosurfaceError::NoLattice)?;
             if spec.spacing.is_some() {
@@ -117,9 +127,16 @@ pub fn isosurface(
             if nodes > MOST_SAMPLES {
                 return Err(IsosurfaceError::TooManyNodes(nodes));
             }
+            let surface = squares(skeletons, space.window.spacing) * SQUARE_BYTES;
+            memory.ask(space.bytes_needed().saturating_add((nodes * SAMPLE_BYTES[1] + surface) as u64))?;
             by_cost(space, skeletons, spec, seed, progress)
         }
     }
+}
+
+/// How many squares as wide as `spacing` the surface of limbs has.
+fn squares(skeletons: &[&Skeleton], spacing: f64) -> f64 {
+    skeletons.iter().map(|s| s.area()).sum::<f64>() / (spacing * spacing)
 }
 
 /// The surface of all that is no farther from the limbs than their width.
@@ -128,6 +145,7 @@ fn by_distance(
     skeletons: &[&Skeleton],
     space: Option<&LatticeSpace>,
     is_flat: bool,
+    memory: &Memory,
     progress: &Progress,
 ) -> Result<Surface, IsosurfaceError> {
     let nodes = || skeletons.iter().flat_map(|s| &s.nodes);
@@ -140,6 +158,7 @@ fn by_distance(
     if samples.is_nan() || samples > MOST_SAMPLES {
         return Err(IsosurfaceError::TooManySamples(samples));
     }
+    memory.ask((samples * SAMPLE_BYTES[0] + squares(skeletons, spacing) * SQUARE_BYTES) as u64)?;
     let margin = 2.0 * spacing;
     let window = Window::new(bounds.min - margin, bounds.max + margin, spacing, dimensions as u32)
         .map_err(IsosurfaceError::Window)?;

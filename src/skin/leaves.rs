@@ -86,6 +86,15 @@ fn golden() -> Degrees {
 }
 
 impl LeavesSpec {
+    /// Bytes that their poses on `skeletons` take at their peak, and as much for each leaf as `leaf` says.
+    #[must_use]
+    pub fn bytes_needed(&self, skeletons: &[&Skeleton], leaf: u64) -> u64 {
+        let ends: usize = skeletons.iter().map(|s| s.paths.len()).sum();
+        let leaves = ends as f64 * f64::from(self.count) * self.share;
+        // A list of unknown length is half empty at worst; meshes are rounded into copies.
+        (leaves * (size_of::<Pose>() as f64 * 1.5 + leaf as f64 * 2.5)) as u64
+    }
+
     /// Where leaves stand on `skeletons`, which one object shows, from `foot`; `stream` is theirs alone.
     ///
     /// # Errors

@@ -4,10 +4,14 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::IsosurfaceSpec;
+use super::cones::count_overlapping;
 use crate::geom::Surface;
 use crate::math::DVec3;
-use crate::model::{Mesh, to_world};
-use crate::skeleton::Skeleton;
+use crate::model::{Ball, Mesh, to_world};
+use crate::skeleton::{Skeleton, SkeletonNode};
+
+/// Bytes that a ring of a tube takes while its mesh is rounded: 10 corners with normals, two triangles each with places.
+const RING_BYTES: u64 = 10 * 2 * (2 * 24 + 2 * (12 + 48));
 
 /// How a skeleton becomes solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -34,6 +38,23 @@ impl Skin {
         match self {
             Self::Mesh => true,
             Self::Spheres | Self::Cones | Self::Isosurface(_) | Self::Surface => false,
+        }
+    }
+
+    /// Bytes that it takes around `skeletons` at its peak; an isosurface asks itself, a surface is there already.
+    #[must_use]
+    pub fn bytes_needed(&self, skeletons: &[&Skeleton]) -> u64 {
+        let nodes = skeletons.iter().map(|s| s.nodes.len() as u64).sum::<u64>();
+        // Parts by level or colour are copies.
+        let ball = 2 * (size_of::<Ball>() + size_of::<[u32; 2]>()) as u64;
+        match self {
+            Self::Cones => nodes * ball,
+            Self::Spheres => {
+                let balls = skeletons.iter().map(|s| count_overlapping(s)).sum::<u64>();
+                balls * (ball + size_of::<SkeletonNode>() as u64)
+            }
+            Self::Mesh => nodes * RING_BYTES,
+            Self::Isosurface(_) | Self::Surface => 0,
         }
     }
 

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::math::{DVec3, GOLDEN_ANGLE, Stream, rotation};
 use crate::model::{Ball, Body, BodyError, Limbs, Object, Thorns};
+use crate::skeleton::Skeleton;
 
 /// Thorns on the surface of limbs: cones of their own for POV-Ray and the preview, in RIB a displacement of the limbs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -30,6 +31,14 @@ pub struct ThornsSpec {
 /// Radius of a thorn's tip over that of its foot.
 const POINT: f64 = 0.15;
 impl ThornsSpec {
+    /// Bytes that thorns on `skeletons` take at their peak.
+    #[must_use]
+    pub fn bytes_needed(&self, skeletons: &[&Skeleton]) -> u64 {
+        let count = skeletons.iter().map(|s| s.area()).sum::<f64>() / (self.apart * self.apart);
+        // Lists of unknown length are half empty at worst.
+        (count * (2 * size_of::<Ball>() + size_of::<[u32; 2]>()) as f64 * 1.5) as u64
+    }
+
     /// What displacement shaders need of it.
     #[must_use]
     pub fn displacement(&self) -> Thorns {

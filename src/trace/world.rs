@@ -216,6 +216,25 @@ fn triangle(mesh: &Mesh, i: usize) -> Triangle {
 }
 
 impl<'a> World<'a> {
+    /// Bytes that the trees over `model` take at their peak.
+    #[must_use]
+    pub fn bytes_needed(model: &Model) -> u64 {
+        let of = |object: &Object| {
+            let shapes = match &object.body {
+                Body::Limbs(limbs) => {
+                    let has_pattern = model.materials[object.material].1.pattern.is_some();
+                    let frames = if has_pattern { limbs.balls.len() * size_of::<LimbFrame>() } else { 0 };
+                    Cones::bytes_needed(limbs.segments.len().max(limbs.balls.len())) + frames
+                }
+                Body::Mesh(mesh) | Body::Posed(mesh, _) => Triangles::bytes_needed(mesh.triangles.len()),
+            };
+            let poses = if let Body::Posed(_, poses) = &object.body { poses.len() } else { 1 };
+            let places = poses * object.instances.len();
+            shapes + places * size_of::<(u32, Standing)>() + Boxes::bytes_needed(places)
+        };
+        model.objects.iter().map(|object| of(object) as u64).sum()
+    }
+
     /// Puts `model` into trees.
     #[must_use]
     pub fn new(model: &'a Model) -> Self {

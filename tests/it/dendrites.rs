@@ -4,15 +4,15 @@ use std::fs;
 
 use crate::support::{embedded, run_in, text};
 use lichtenberg::grow::Grown;
-use lichtenberg::math::{DVec3, Progress};
+use lichtenberg::math::{DVec3, Memory, Progress};
 use lichtenberg::model::Model;
 use lichtenberg::scene::{grow, model};
 use proptest::prelude::*;
 
 fn grown(name: &str, overrides: &[(&str, &str)]) -> (Vec<Grown>, Model) {
     let scene = embedded(name, overrides);
-    let grown = grow(&scene, &[], 8 << 30, &Progress::default()).unwrap();
-    let model = model(&scene, &grown, [160, 120], &Progress::default()).unwrap();
+    let grown = grow(&scene, &[], &Memory::new(8 << 30), &Progress::default()).unwrap();
+    let model = model(&scene, &grown, [160, 120], &Memory::default(), &Progress::default()).unwrap();
     (grown, model)
 }
 

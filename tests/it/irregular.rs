@@ -6,7 +6,7 @@ use crate::support::{embedded, export_changed, refuses, run_in, succeed_in, text
 use lichtenberg::files::decode_ply;
 use lichtenberg::geom::ClosedMesh;
 use lichtenberg::grow::Grown;
-use lichtenberg::math::Progress;
+use lichtenberg::math::{Memory, Progress};
 use lichtenberg::scene::{Loaded, grow, model};
 
 const TREE: &str = r#"
@@ -181,7 +181,7 @@ fn trees_compete_for_light() {
         );
         let changes: Vec<_> = if alone { far.into_iter().chain([stem]).collect() } else { Vec::new() };
         let scene = embedded("two-trees", &changes);
-        let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
+        let grown = grow(&scene, &[], &Memory::default(), &Progress::default()).unwrap();
         let left = grown.iter().find(|g| g.name == "left-limbs").unwrap();
         lichtenberg::skeleton::measure_from(&left.skeleton, left.foot).lean
     };
@@ -193,8 +193,8 @@ fn trees_compete_for_light() {
 #[test]
 fn obstacles_are_kept_clear() {
     let scene = embedded("hedge-against-wall", &[]);
-    let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
-    let model = model(&scene, &grown, [64, 64], &Progress::default()).unwrap();
+    let grown = grow(&scene, &[], &Memory::default(), &Progress::default()).unwrap();
+    let model = model(&scene, &grown, [64, 64], &Memory::default(), &Progress::default()).unwrap();
     let inside = model
         .objects
         .iter()

@@ -46,15 +46,17 @@ fn comparisons_fit_into_memory() {
     succeed_in(folder.path(), &["compare", "a", "b", "--max-memory", "150M"]);
 }
 
-/// What no estimate knows, for it comes after growth, ends when it takes too much.
+/// What no estimate knows - how much a file becomes that is read - ends when it takes too much.
 #[cfg(target_os = "linux")]
 #[test]
 fn memory_is_held() {
     let folder = tempfile::tempdir().unwrap();
-    let fine = "object.cactus.skin={ isosurface = { spacing = 0.006 } }";
+    succeed_in(folder.path(), &["new", "broken-vase"]);
+    let faces = "f 1 2 3\n".repeat(6_000_000);
+    fs::write(folder.path().join("assets/vase.obj"), format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{faces}")).unwrap();
     let mut child = lichtenberg()
         .current_dir(folder.path())
-        .args(["export", "cactus", "--to", "obj", "--set", fine, "--max-memory", "200M"])
+        .args(["export", "broken-vase.toml", "--to", "pov", "--max-memory", "50M"])
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
@@ -69,9 +71,34 @@ fn memory_is_held() {
     }
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
-    assert!(text(&output.stderr).contains("more than the 209 MB of memory allowed"), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("more than the 52 MB of memory allowed"), "{}", text(&output.stderr));
     // What a scene takes within the time between two looks, at the pace of memory that is filled by two threads.
-    assert!(peak > 200 << 10 && peak < 600 << 10, "{peak} kB");
+    assert!(peak > 50 << 10 && peak < 450 << 10, "{peak} kB");
+}
+
+/// What is known before it is made is refused before.
+#[test]
+fn what_is_too_large_is_not_begun() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let isosurface =
+        ["export", "cactus", "--to", "obj", "--set", "object.cactus.skin={ isosurface = { spacing = 0.006 } }"];
+    let thorns = [
+        "export",
+        "cactus",
+        "--to",
+        "pov",
+        "--set",
+        "object.cactus.thorns={ length = 0.1, radius = 0.01, apart = 0.001 }",
+    ];
+    let triangles = ["export", "forest", "--to", "ply"];
+    let layers = ["render", "elm", "--size", "2000x2000", "--samples", "1", "-o", "a.exr"];
+    for (call, limit) in [(&isosurface[..], "200M"), (&thorns, "200M"), (&triangles, "500M"), (&layers, "1G")] {
+        let refused = run_in(at, &[call, &["--max-memory", limit]].concat());
+        let said = text(&refused.stderr);
+        assert!(refused.status.code() == Some(2) && said.contains("MB of memory, more than the"), "{call:?}: {said}");
+        assert_eq!(fs::read_dir(at).unwrap().count(), 0);
+    }
 }
 
 /// Others may leave half of a file: it is not taken for one that is done.

@@ -5,6 +5,7 @@ mod command;
 mod compare;
 mod dendrites;
 mod digests;
+mod estimates;
 mod examples;
 mod exr;
 mod geometry;

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use lichtenberg::export::{Origin, Pov, Templates};
 use lichtenberg::files::{Folder, embedded_scenes};
-use lichtenberg::math::{Progress, Stream};
+use lichtenberg::math::{Memory, Progress, Stream};
 use lichtenberg::scene::{Source, Stage, check, grow, load, model};
 use lichtenberg::trace::{Look, RenderSettings, World};
 use rand::RngExt;
@@ -186,13 +186,15 @@ fn run(source: &Source, progress: &Progress) -> Fate {
             return Fate::Refused;
         }
     };
-    match check(&scene, MOST_MEMORY, progress) {
+    let memory = Memory::new(MOST_MEMORY);
+    match check(&scene, &memory, progress) {
         Err(Stage::Memory(_)) => return Fate::Large,
         Err(Stage::Cancelled(_)) => return Fate::Endless,
         Err(Stage::Scene(_)) => return Fate::Refused,
         Ok(()) => {}
     }
-    let made = grow(&scene, &[], MOST_MEMORY, progress).and_then(|grown| model(&scene, &grown, [64, 48], progress));
+    let made =
+        grow(&scene, &[], &memory, progress).and_then(|grown| model(&scene, &grown, [64, 48], &memory, progress));
     match made {
         Ok(model) => {
             let mut out = Vec::new();

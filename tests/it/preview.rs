@@ -10,7 +10,7 @@ use crate::support::sample::sample;
 use crate::support::{embedded, lichtenberg, require_povray, run_in, scene_names, small_variant, succeed_in, text};
 use lichtenberg::compare::{Metric, measure};
 use lichtenberg::files::{Rgba, decode_linear, decode_png};
-use lichtenberg::math::Progress;
+use lichtenberg::math::{Memory, Progress};
 use lichtenberg::scene::{grow, model};
 use lichtenberg::trace::{Look, RenderSettings, World, render};
 use rayon::prelude::*;
@@ -96,8 +96,8 @@ fn the_studio_is_carried_over() {
 #[test]
 fn threads_and_crops_change_nothing() {
     let scene = embedded("grove", &[("grow.elm.to.twigs.count", "120")]);
-    let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
-    let model = model(&scene, &grown, [96, 64], &Progress::default()).unwrap();
+    let grown = grow(&scene, &[], &Memory::default(), &Progress::default()).unwrap();
+    let model = model(&scene, &grown, [96, 64], &Memory::default(), &Progress::default()).unwrap();
     let world = World::new(&model);
     for look in [Look::Studio, Look::Exact] {
         let view = RenderSettings { data: true, ..RenderSettings::new([96, 64], look, 4) };

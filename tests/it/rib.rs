@@ -3,14 +3,14 @@
 use crate::support::rib::{Primitive, World, point, read};
 use crate::support::{embedded, run_in, succeed_in, text};
 use lichtenberg::export::{Origin, Rib, RibOptions, RibShadows, Templates};
-use lichtenberg::math::{DVec3, Progress};
+use lichtenberg::math::{DVec3, Memory, Progress};
 use lichtenberg::model::{Camera, Model, Object, Projection};
 use lichtenberg::scene::{grow, model};
 
 fn modelled(name: &str) -> Model {
     let scene = embedded(name, &[]);
-    let grown = grow(&scene, &[], 8 << 30, &Progress::default()).unwrap();
-    model(&scene, &grown, [160, 120], &Progress::default()).unwrap()
+    let grown = grow(&scene, &[], &Memory::new(8 << 30), &Progress::default()).unwrap();
+    model(&scene, &grown, [160, 120], &Memory::default(), &Progress::default()).unwrap()
 }
 
 fn exported(model: &Model, options: RibOptions) -> (String, String) {

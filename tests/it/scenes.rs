@@ -4,7 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::LazyLock;
 
 use lichtenberg::grow::Grown;
-use lichtenberg::math::Progress;
+use lichtenberg::math::{Memory, Progress};
 use lichtenberg::scene::{Loaded, check_claims, grow, model};
 use rayon::prelude::*;
 
@@ -33,8 +33,8 @@ static CHECKED: LazyLock<Vec<Checked>> = LazyLock::new(|| {
 
 fn check(name: &str) -> Checked {
     let scene = embedded(name, &[]);
-    let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
-    let model = model(&scene, &grown, [320, 240], &Progress::default()).unwrap();
+    let grown = grow(&scene, &[], &Memory::default(), &Progress::default()).unwrap();
+    let model = model(&scene, &grown, [320, 240], &Memory::default(), &Progress::default()).unwrap();
     let is_whole = WHOLE.iter().any(|whole| whole == name);
     Checked {
         digests: told(|| crate::digests::digests(name, &scene, &model, is_whole)),
@@ -106,7 +106,7 @@ fn claims_can_fail() {
             vec![change]
         };
         let scene = embedded(name, &changes);
-        let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
+        let grown = grow(&scene, &[], &Memory::default(), &Progress::default()).unwrap();
         let finding = check_claims(&scene, &grown).into_iter().find(|f| f.claim == claim).unwrap();
         assert!(!finding.holds, "{name}: {claim} holds with {change:?}");
     }
@@ -124,7 +124,7 @@ fn files_are_the_same_everywhere() {
 fn more_endpoints_keep_the_first() {
     let ends = |count: &str| {
         let scene = embedded("elm", &[("grow.elm.to.twigs.count", count), ("grow.elm.smooth", "0")]);
-        let grown = grow(&scene, &[], u64::MAX, &Progress::default()).unwrap();
+        let grown = grow(&scene, &[], &Memory::default(), &Progress::default()).unwrap();
         let skeleton = &grown[0].skeleton;
         skeleton.paths.iter().map(|p| skeleton.nodes[p.end as usize].position).collect::<Vec<_>>()
     };

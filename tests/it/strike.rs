@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::support::{embedded, openimageio, run_in, succeed_in, text};
-use lichtenberg::math::Progress;
+use lichtenberg::math::{Memory, Progress};
 use lichtenberg::scene::grow;
 use lichtenberg::skeleton::apart;
 
@@ -213,7 +213,7 @@ print(abs(found - expected).max(), kept == len(open("{ADOBE_RGB}", "rb").read())
 fn strokes_do_not_depend_on_the_size() {
     let bolt = |size: &str| {
         let scene = embedded("storm", &[("size", size)]);
-        let grown = grow(&scene, &[], 1 << 30, &Progress::default()).unwrap();
+        let grown = grow(&scene, &[], &Memory::new(1 << 30), &Progress::default()).unwrap();
         grown.into_iter().find(|step| step.name == "bolt").unwrap().skeleton
     };
     let (small, large) = (bolt("[960, 640]"), bolt("[3840, 2560]"));
@@ -414,8 +414,10 @@ fn animations_have_frames() {
     // What has grown stays, and more comes.
     let at_frame = |until: &str| {
         let scene = embedded("leader", &[("object.lightning.until", until)]);
-        let grown = grow(&scene, &[], 1 << 30, &Progress::default()).unwrap();
-        lichtenberg::scene::model(&scene, &grown, scene.recipe.size, &Progress::default()).unwrap().strokes[0]
+        let grown = grow(&scene, &[], &Memory::new(1 << 30), &Progress::default()).unwrap();
+        lichtenberg::scene::model(&scene, &grown, scene.recipe.size, &Memory::default(), &Progress::default())
+            .unwrap()
+            .strokes[0]
             .pieces
             .clone()
     };

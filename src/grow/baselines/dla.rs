@@ -186,7 +186,7 @@ impl Method for DlaSpec {
     }
 
     fn bytes_needed(&self, step: &Step) -> u64 {
-        step.lattice().map_or(0, |space| space.bytes_with_paths(0, 5))
+        step.lattice().map_or(0, |space| space.bytes_beside(space.window.nodes() * 5))
     }
 }
 

@@ -177,8 +177,8 @@ impl Method for RegionsSpec {
 
     fn bytes_needed(&self, step: &Step) -> u64 {
         let Ok(space) = step.lattice() else { return 0 };
-        // A region and a cost, carried along paths, and those of lattices twice as fine.
-        space.bytes_with_paths(0, 20_u64 << (space.neighbours.dimensions() * self.refine))
+        // A region and a cost, carried along paths, and what is kept; and those of lattices twice as fine.
+        space.bytes_with_paths(0, 12_u64 << (space.neighbours.dimensions() * self.refine))
     }
 
     fn yields(&self) -> Yield {

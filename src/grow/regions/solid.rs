@@ -18,6 +18,20 @@ pub struct Regions {
 }
 
 impl Regions {
+    /// Bytes in memory.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let solid = self.solid.get().map_or(0, |solid| solid.bytes());
+        self.is_inside.len() + solid + self.surfaces.iter().map(Surface::bytes).sum::<usize>()
+    }
+
+    /// Bytes that [`Regions::solid`] takes at its peak.
+    #[must_use]
+    pub fn solid_bytes_needed(&self) -> usize {
+        let samples = if self.solid.get().is_some() { 0 } else { self.is_inside.len() };
+        samples * Voxels::SAMPLE_BYTES
+    }
+
     /// All of them as one solid, without the gaps between them.
     #[must_use]
     pub fn solid(&self) -> Arc<Voxels> {

@@ -20,7 +20,7 @@ use crate::grow::grown::{Grown, Part};
 use crate::grow::space::Space;
 use crate::grow::spaces::{ScatterSpace, SubgraphPlace};
 use crate::grow::step::{Context, Generators, Step, Unreached};
-use crate::math::{DMat3, DVec3, Progress, Stream, frame_along, from_height, mix, rotated_toward, rotation};
+use crate::math::{DMat3, DVec3, Memory, Progress, Stream, frame_along, from_height, mix, rotated_toward, rotation};
 use crate::plan::routes;
 use crate::skeleton::{Path, Skeleton, SkeletonNode};
 
@@ -173,7 +173,7 @@ impl<'a> Rounds<'a> {
         self.repeat.influences.iter().filter_map(Influence::clump)
     }
 
-    /// Grows one round within `max_memory` bytes. `canopies` has a canopy for each of [`Rounds::clumps`], of what grew before
+    /// Grows one round within `memory`. `canopies` has a canopy for each of [`Rounds::clumps`], of what grew before
     /// this round.
     ///
     /// # Errors
@@ -182,7 +182,7 @@ impl<'a> Rounds<'a> {
         &mut self,
         canopies: &[Canopy],
         show: &[MarkKind],
-        max_memory: u64,
+        memory: &Memory,
         progress: &Progress,
     ) -> Result<(), GrowError> {
         let stream = Stream::new(self.seed, &format!("rounds/{}/{}", self.step.name, self.round));
@@ -201,7 +201,7 @@ impl<'a> Rounds<'a> {
             .zip(&shares)
             .map(|(end, share)| self.counts(end, share).iter().map(|&count| f64::from(count)).sum::<f64>())
             .sum();
-        let most = f64::min(MOST_ENDS, max_memory as f64 / END_BYTES);
+        let most = f64::min(MOST_ENDS, memory.left() as f64 / END_BYTES);
         if self.grown.skeleton.paths.len() as f64 + counted > most {
             let problem = Problem::TooManyEnds { round: self.round + 1, ends: counted, most };
             return Err(self.step.error(Key::Rounds, problem));

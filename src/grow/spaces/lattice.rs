@@ -4,10 +4,10 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::geom::{Neighbours, Shape};
+use crate::geom::{Bounds, Neighbours, Shape};
 use crate::graph::{CostField, Lattice, LatticeError, Mask, Window};
 use crate::grow::grown::NODE_BYTES;
-use crate::math::{DVec3, Stream, Weights};
+use crate::math::{DVec3, Stream, Weights, power};
 use crate::plan;
 
 /// A regular lattice: its nodes are the multiples of the spacing within the shape.
@@ -20,6 +20,9 @@ pub struct LatticeSpec {
     /// 4 or 8 neighbours in the plane, 6, 18 or 26 in space; longer edges cost in proportion.
     pub neighbours: Neighbours,
 }
+
+/// The union of least-cost paths over the length of a shortest tree: from 1.2 to 4 in the scenes (`benches/README.md`).
+const MEETING: f64 = 2.0;
 
 /// A regular lattice in a shape.
 #[derive(Clone, Debug)]
@@ -97,22 +100,46 @@ impl LatticeSpace {
     /// Bytes that planning in it takes at its peak.
     #[must_use]
     pub fn bytes_needed(&self) -> u64 {
+        self.bytes_beside(plan::bytes_needed(self.window.nodes()))
+    }
+
+    /// Bytes that it takes at its peak, with so many more once it is there.
+    pub(in crate::grow) fn bytes_beside(&self, more: u64) -> u64 {
         let nodes = self.window.nodes();
         let varies = self.varies();
         let table: u64 = (0..3).map(|axis| if varies[axis] { u64::from(self.window.size[axis]) } else { 1 }).product();
         // A field table has 8 bytes an entry, made from samples of 16.
         let fields = if self.fields.is_empty() { 0 } else { table * 24 };
         let mask = if self.is_masked() { nodes / 8 } else { 0 };
-        (plan::bytes_needed(nodes) + mask).max(nodes / 8 + fields) + fields / 3
+        (more + mask).max(nodes / 8 + fields) + fields / 3
+    }
+
+    /// The share of its nodes that are open, of a sample; shapes of what has not grown yet are empty.
+    fn open_share(&self) -> f64 {
+        if !self.is_masked() {
+            return 1.0;
+        }
+        let corners = [[0; 3], self.window.size.map(|s| s - 1)].map(|at| self.window.position(at));
+        Bounds { min: corners[0], max: corners[1] }.share(|p| self.is_open(p))
+    }
+
+    /// How many nodes the union of so many paths has, about: a tree that joins n random points is as long as n to the power of
+    /// (d - 1) / d (Steele 1988), one of least-cost paths longer, for these meet later ([`MEETING`]); no path is longer than
+    /// the lattice is wide.
+    fn nodes_of_paths(&self, paths: u64) -> u64 {
+        let open = self.window.nodes() as f64 * self.open_share();
+        let across: f64 = self.window.size.iter().map(|&s| f64::from(s)).sum();
+        let dimensions = f64::from(self.neighbours.dimensions());
+        let paths = paths as f64;
+        let tree = MEETING * power(paths, 1.0 - 1.0 / dimensions) * power(open, 1.0 / dimensions);
+        (tree + across).min(paths * across).min(open) as u64
     }
 
     /// Bytes that planning so many paths in it takes, where a method keeps `each` bytes of every node beside the search.
     #[must_use]
     pub fn bytes_with_paths(&self, paths: u64, each: u64) -> u64 {
         let nodes = self.window.nodes();
-        let across: u64 = self.window.size.iter().map(|&s| u64::from(s)).sum();
-        // Paths share most of their nodes; they can never have more than the lattice has.
-        let skeleton = paths.saturating_mul(across).min(nodes) * NODE_BYTES;
+        let skeleton = self.nodes_of_paths(paths) * NODE_BYTES;
         self.bytes_needed().saturating_add(skeleton).saturating_add(nodes.saturating_mul(each))
     }
 

@@ -177,9 +177,12 @@ impl ScatterSpace {
     /// Bytes that planning in it takes at its peak.
     #[must_use]
     pub fn bytes_needed(&self) -> u64 {
+        // Where clusters lie is not known.
+        let is_open = |p: DVec3| self.shape.contains(p) && !self.forbid.as_ref().is_some_and(|f| f.contains(p));
+        let share = if self.clusters.is_some() { 1.0 } else { self.shape.bounds().share(is_open) };
         // Those of a Yao graph are counted with the nodes.
         let more = (self.edges_estimate() - 12.0 * self.estimate()).max(0.0) * 16.0;
-        scatter_bytes(self.estimate()).saturating_add(more as u64)
+        scatter_bytes(self.estimate() * share).saturating_add((more * share) as u64)
     }
 
     /// The table of its weights.

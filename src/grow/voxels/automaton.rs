@@ -125,7 +125,8 @@ impl Method for Automaton {
 
     fn bytes_needed(&self, step: &Step) -> u64 {
         match &step.space {
-            Some(Space::Voxels(space)) => space.bytes_needed() + u64::from(self.nodes) * NODE_BYTES,
+            // What grows asks as it grows.
+            Some(Space::Voxels(space)) => space.bytes_needed(),
             _ => 0,
         }
     }
@@ -314,6 +315,7 @@ fn grow_garden(
     garden.sow(before, context)?;
     let rounds = garden.plants.iter().map(|plant| plant.own.rounds).max().unwrap_or(0);
     for round in 0..rounds {
+        context.memory.ask(garden.bytes_ahead())?;
         let choices = garden.choose(round);
         garden.grow(&choices, round);
         if round == 0
@@ -330,6 +332,13 @@ fn grow_garden(
 }
 
 impl Garden<'_> {
+    /// Bytes that it takes when every tip has grown once more, and branched.
+    fn bytes_ahead(&self) -> u64 {
+        let nodes: usize = self.plants.iter().map(|plant| plant.skeleton.nodes.len()).sum();
+        let voxels = self.voxels.bytes() * (1 + usize::from(self.solids.is_some()));
+        voxels as u64 + (nodes + 2 * self.tips.len()) as u64 * NODE_BYTES
+    }
+
     /// Puts in what grew before, and the tips that all plants start with.
     fn sow(&mut self, before: &[(&Step, &Skeleton)], context: &Context<'_>) -> Result<(), GrowError> {
         let mut known: FxHashMap<[u64; 3], u32> = FxHashMap::default();

@@ -2,7 +2,7 @@
 
 use lichtenberg::files::Folder;
 use lichtenberg::grow::Grown;
-use lichtenberg::math::{DVec3, Progress};
+use lichtenberg::math::{DVec3, Memory, Progress};
 use lichtenberg::scene::{Loaded, SceneError, Source, grow, load};
 use lichtenberg::skeleton::Skeleton;
 
@@ -20,7 +20,7 @@ pub fn load_text(steps: &str) -> Result<Loaded, SceneError> {
 }
 
 pub fn grown(scene: &Loaded) -> Vec<Grown> {
-    grow(scene, &[], 8 << 30, &Progress::default()).unwrap_or_else(|error| panic!("{error}"))
+    grow(scene, &[], &Memory::new(8 << 30), &Progress::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 pub fn only(steps: &str) -> Skeleton {
