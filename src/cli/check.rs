@@ -1,6 +1,7 @@
 //! `check`: every mistake in scenes, and whether they hold what they claim.
 
 use super::args::CheckArgs;
+use super::claims::Tallies;
 use super::console::Console;
 use super::error::Failure;
 use super::jobs::Jobs;
@@ -9,7 +10,7 @@ use crate::scene::{self, check_claims};
 pub fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
     let jobs = Jobs::new(&args.scene, console)?;
     let mut worst = None;
-    let mut broken = Vec::new();
+    let mut tallies = Tallies::default();
     for job in &jobs.list {
         let progress = console.progress(job.name());
         let checked = jobs.load(job).and_then(|scene| {
@@ -35,30 +36,26 @@ pub fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
             }
             continue;
         }
-        let grown = jobs.grow(&scene, &[], console, &progress)?;
-        console.done();
-        for finding in check_claims(&scene, &grown) {
-            if console.json {
-                console.result(&serde_json::json!({ "scene": job.name(), "finding": finding }));
-            } else {
-                let word = if finding.holds { "holds" } else { "DOES NOT HOLD" };
-                console.line(&format!(
-                    "{}: {} {word}: {:.4}, {} ({})",
-                    job.name(),
-                    finding.claim,
-                    finding.measured,
-                    finding.against,
-                    finding.says
-                ));
+        match jobs.grow(&scene, &[], console, &progress) {
+            Ok(grown) => {
+                console.done();
+                let one_of_several = jobs.list.iter().filter(|other| other.name() == job.name()).count() > 1;
+                tallies.add(job, &scene, check_claims(&scene, &grown), one_of_several, console);
             }
-            if !finding.holds {
-                broken.push(format!("{}: {}", job.name(), finding.claim));
+            Err(Failure::Stopped) => return Err(Failure::Stopped),
+            // Other seeds may grow.
+            Err(failure) => {
+                console.note(&format!("{} does not grow: {}", job.name(), job.title()));
+                if let Some(earlier) = worst.replace(failure) {
+                    earlier.print(console);
+                }
             }
         }
     }
+    tallies.sum_up(console);
     match worst {
         Some(failure) => Err(failure),
-        None if broken.is_empty() => Ok(()),
-        None => Err(Failure::No(format!("claims that do not hold: {}", broken.join(", ")))),
+        None if tallies.broken().is_empty() => Ok(()),
+        None => Err(Failure::No(format!("claims that do not hold: {}", tallies.broken().join(", ")))),
     }
 }

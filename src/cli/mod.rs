@@ -2,6 +2,7 @@
 
 mod args;
 mod check;
+mod claims;
 mod compare;
 mod console;
 mod draw;

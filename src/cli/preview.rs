@@ -16,8 +16,9 @@ use crate::trace::{self, RenderSettings, World};
 
 /// Samples a pixel where none are asked for, in the studio and the exact look.
 const SAMPLES: [u32; 2] = [8, 9];
-/// Bytes that a pixel takes at the peak; and with all that an EXR keeps of it: 148 as they are traced, 164 in layers, these once
-/// more while they are encoded, and what they are packed to.
+/// Bytes that a pixel takes while it is traced; and with all that an EXR keeps of it.
+const FILM_BYTES: [u64; 2] = [32, 164];
+/// The same while it is written, when the scene is gone: of an EXR also layers, these once more, and what they are packed to.
 const PIXEL_BYTES: [u64; 2] = [64, 520];
 
 /// A finished picture.
@@ -54,7 +55,7 @@ pub fn view(args: &RenderArgs, size: [u32; 2], data: bool, memory: &Memory) -> R
             size[0], size[1]
         )));
     }
-    memory.ask(picture_bytes([width, height], data)).map_err(|error| {
+    memory.ask(pixels([width, height]) * PIXEL_BYTES[usize::from(data)]).map_err(|error| {
         Failure::Usage(format!(
             "a picture of {width} by {height} pixels needs {error}: render it in parts, with --crop, or raise --max-memory"
         ))
@@ -67,15 +68,14 @@ pub fn view(args: &RenderArgs, size: [u32; 2], data: bool, memory: &Memory) -> R
     })
 }
 
-/// Bytes that a picture takes at its peak; `data` keeps what an EXR holds besides colours.
-fn picture_bytes([width, height]: [u32; 2], data: bool) -> u64 {
-    u64::from(width) * u64::from(height) * PIXEL_BYTES[usize::from(data)]
+fn pixels([width, height]: [u32; 2]) -> u64 {
+    u64::from(width) * u64::from(height)
 }
 
 /// Traces `view` of `model` within `memory`.
 pub fn trace(model: &Model, view: &RenderSettings, memory: &Memory, progress: &Progress) -> Result<Drawn, Failure> {
     let [_, _, width, height] = view.crop;
-    let needed = World::bytes_needed(model) + picture_bytes([width, height], view.data);
+    let needed = World::bytes_needed(model) + pixels([width, height]) * FILM_BYTES[usize::from(view.data)];
     memory
         .beside(model.bytes() as u64)
         .ask(needed)

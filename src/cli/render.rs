@@ -19,7 +19,7 @@ use crate::export::identifier;
 use crate::files::{Rgba, decode_exr, decode_png};
 
 pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Result<(), Failure> {
-    let jobs = Jobs::new(&args.scene, console)?;
+    let mut jobs = Jobs::new(&args.scene, console)?;
     let keep = args.output.is_some() || args.sheet.is_none();
     let default = PathBuf::from(format!("{}.png", jobs.pattern));
     let outputs = jobs.outputs(args.output.as_ref().unwrap_or(&default).as_os_str())?;
@@ -32,7 +32,7 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
     jobs.guard(&written)?;
     note_look(args, console);
     let mut tiles = Vec::new();
-    for (job, path) in jobs.list.iter().zip(&outputs) {
+    for (job, path) in jobs.list.clone().iter().zip(&outputs) {
         let begun = Instant::now();
         let screen = if keep && args.skip_existing && is_whole(path) {
             // Only a sheet needs what is there already.
@@ -56,6 +56,8 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
         if args.show.contains(&Show::Terminal) {
             terminal::show(&screen, console)?;
         }
+        // Kept until the sheet is made.
+        jobs.memory = jobs.memory.beside(screen.bytes.len() as u64);
         tiles.push(Tile { picture: screen, label: job.label.clone() });
     }
     console.done();

@@ -45,7 +45,7 @@ pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
         (None, seed) => vec![seed],
     };
     let shots = shots(args, seeds.len())?;
-    let memory = memory::held(args.limits.max_memory);
+    let mut memory = memory::held(args.limits.max_memory);
     let track = args.track.as_ref().map(|path| Table::read(path, parse_place)).transpose()?;
     let number = |text: &str| match text.parse::<f64>() {
         Ok(x) if (0.0..1e6).contains(&x) => Ok(x),
@@ -110,9 +110,11 @@ pub fn run(args: &StrikeArgs, console: &Console) -> Result<(), Failure> {
                 stroke.glow.exposure = args.exposure.unwrap_or(stroke.glow.exposure);
             }
             let shone = shine(&resolved, &strokes, &memory, &progress)?;
-            write(args, &shone, &resolved, shot, seed, begun, &memory, console)?;
+            write(args, &shone, &resolved, shot, begun, &memory, console)?;
             if args.sheet.is_some() {
-                tiles.push(Tile { picture: shone.to_screen(), label });
+                let picture = shone.to_screen();
+                memory = memory.beside(picture.bytes.len() as u64);
+                tiles.push(Tile { picture, label });
             }
         }
     }
@@ -129,7 +131,6 @@ fn write(
     shone: &Shone,
     scene: &Loaded,
     shot: &Shot,
-    seed: Option<u64>,
     begun: Instant,
     memory: &Memory,
     console: &Console,
@@ -141,7 +142,7 @@ fn write(
         let path = with_seed(output, scene.recipe.seed);
         for file in write_shone(shone, &path, depth(&args.bits), args.split, &texts)? {
             let details = serde_json::json!({
-                "seed": seed.unwrap_or(scene.recipe.seed),
+                "seed": scene.recipe.seed,
                 "frame": shot.frame,
                 "size": scene.recipe.size,
                 "seconds": begun.elapsed().as_secs_f64(),

@@ -95,24 +95,20 @@ fn squared_distances(size: [usize; 3], set: impl Fn(usize) -> bool + Sync) -> Ve
     );
     if nz > 1 {
         // Along z: slices of x and z, gathered for each y.
-        let layers: Vec<Vec<f32>> = (0..ny)
-            .into_par_iter()
-            .map_init(
-                || (Envelope::default(), vec![0.0; nz]),
-                |(envelope, line), y| {
-                    let mut layer = vec![0.0; nx * nz];
-                    for x in 0..nx {
-                        (0..nz).for_each(|z| line[z] = all[x + nx * (y + ny * z)]);
-                        envelope.lower(line);
-                        (0..nz).for_each(|z| layer[x + nx * z] = line[z]);
-                    }
-                    layer
-                },
-            )
-            .collect();
+        let mut layers = vec![0.0; all.len()];
+        layers.par_chunks_mut(nx * nz).enumerate().for_each_init(
+            || (Envelope::default(), vec![0.0; nz]),
+            |(envelope, line), (y, layer)| {
+                for x in 0..nx {
+                    (0..nz).for_each(|z| line[z] = all[x + nx * (y + ny * z)]);
+                    envelope.lower(line);
+                    (0..nz).for_each(|z| layer[x + nx * z] = line[z]);
+                }
+            },
+        );
         all.par_chunks_mut(nx).enumerate().for_each(|(row, to)| {
-            let (y, z) = (row % ny, row / ny);
-            to.copy_from_slice(&layers[y][nx * z..nx * (z + 1)]);
+            let from = nx * (row / ny + nz * (row % ny));
+            to.copy_from_slice(&layers[from..from + nx]);
         });
     }
     all

@@ -128,6 +128,8 @@ pub struct Finding {
     pub against: String,
     /// Does the claim hold?
     pub holds: bool,
+    /// How far within its bounds it is, as a share of the nearest one (of 1 where that is 0); below 0 where it does not hold.
+    pub margin: f64,
 }
 
 /// Measures every claim on the steps that were grown.
@@ -142,23 +144,32 @@ pub fn check_claims(scene: &Loaded, grown: &[Grown]) -> Vec<Finding> {
         let measured = measure(step(&claim.of)?, with);
         let mut against = Vec::new();
         let mut holds = true;
+        let mut margin = f64::INFINITY;
+        let mut within = |room: f64, of: f64| {
+            let share = room / if of == 0.0 { 1.0 } else { of.abs() };
+            margin = if share.is_nan() { f64::NEG_INFINITY } else { margin.min(share) };
+        };
         if let Some(least) = claim.at_least {
             against.push(format!("at least {least}"));
             holds &= measured >= least;
+            within(measured - least, least);
         }
         if let Some(most) = claim.at_most {
             against.push(format!("at most {most}"));
             holds &= measured <= most;
+            within(most - measured, most);
         }
         if let Some(other) = &claim.as_of {
             let same = measure(step(other)?, None);
             against.push(format!("{same:.4} of `{}` to {}", other.name, claim.within));
             holds &= (measured - same).abs() <= claim.within;
+            within(claim.within - (measured - same).abs(), claim.within);
         }
         if let Some(other) = &claim.more_than {
             let than = measure(step(other)?, None);
             against.push(format!("more than {} times {than:.4} of `{}`", claim.times, other.name));
             holds &= measured > than * claim.times;
+            within(measured - than * claim.times, than * claim.times);
         }
         Some(Finding {
             claim: name.clone(),
@@ -166,6 +177,7 @@ pub fn check_claims(scene: &Loaded, grown: &[Grown]) -> Vec<Finding> {
             measured,
             against: against.join(", "),
             holds: holds && !against.is_empty(),
+            margin,
         })
     });
     findings.collect()

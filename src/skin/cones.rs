@@ -1,6 +1,5 @@
 //! Round cones and spheres along limbs.
 
-use super::foot;
 use crate::math::{DVec3, tolerance::INVISIBLE_RADIUS};
 use crate::model::{Ball, Body, BodyError, Digits, Limbs, Object, to_world};
 use crate::skeleton::{Skeleton, overlap, overlap_count};
@@ -41,6 +40,12 @@ pub fn spheres(
     let dense: Vec<Skeleton> = skeletons.iter().map(|s| overlap(s, SPHERE_GAP, MOST_SPHERES)).collect();
     let (limbs, digits) = limbs(&dense.iter().collect::<Vec<_>>(), root, is_flat, false)?;
     Ok(Object::new(name, Body::Limbs(limbs), to_world(root + offset, is_flat), digits, material))
+}
+
+/// The foot of an object made of `skeletons`: their first root.
+#[must_use]
+pub fn foot(skeletons: &[&Skeleton]) -> Option<DVec3> {
+    skeletons.iter().find_map(|s| s.nodes.first()).map(|node| node.position)
 }
 
 /// How many spheres [`spheres`] has for `skeleton`.

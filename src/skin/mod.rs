@@ -13,13 +13,13 @@ mod strokes;
 mod thorns;
 mod tubes;
 
-pub use cones::{cones, spheres};
+pub use cones::{cones, foot, spheres};
 pub use isosurface::{Distance, IsosurfaceError, IsosurfaceSpec, isosurface};
 pub use leaf_mesh::{LeafError, ball_mesh, leaf_mesh};
 pub use leaves::{LeafLight, LeavesSpec};
 pub use levels::by_level;
 pub use paint::{PaintSpec, Painting, painted};
-pub use spec::{Skin, foot, surface_mesh};
+pub use spec::{Skin, surface_mesh};
 pub use strokes::{shining, stroke};
 pub use thorns::ThornsSpec;
 pub use tubes::tubes;

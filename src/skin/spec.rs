@@ -75,9 +75,3 @@ pub fn surface_mesh(surface: &Surface, foot: DVec3, is_flat: bool) -> Mesh {
     let normals = if is_flat { Vec::new() } else { surface.normals() };
     Mesh { points, normals, triangles: surface.triangles.clone(), uvs: Vec::new() }
 }
-
-/// The foot of an object made of `skeletons`: their first root.
-#[must_use]
-pub fn foot(skeletons: &[&Skeleton]) -> Option<DVec3> {
-    skeletons.iter().find_map(|s| s.nodes.first()).map(|node| node.position)
-}

@@ -118,8 +118,8 @@ impl Method for FractalSpec {
     }
 
     fn bytes_needed(&self, step: &Step) -> u64 {
-        // The nearest node and how far it is, and the skeleton's node.
-        step.lattice().map_or(0, |space| space.bytes_with_paths(step.count_paths(), 12))
+        // The nearest node, how far it is, the list of those that have one, and the skeleton's node.
+        step.lattice().map_or(0, |space| space.bytes_with_paths(step.count_paths(), 16))
     }
 }
 
