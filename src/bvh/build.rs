@@ -16,7 +16,7 @@ const MOST_COINCIDENT: usize = 4096;
 /// Boxes clustered at once, which bounds the temporary memory.
 const PIECE: usize = 1 << 16;
 /// Bytes that clustering takes of each.
-const PIECE_BYTES: usize = 128;
+const PIECE_BYTES: usize = 96;
 
 /// Bytes that clustering takes while it is under way.
 pub(super) fn bytes_of_pieces(count: usize) -> usize {

@@ -15,6 +15,10 @@ const PIXELS: u32 = 4;
 const MOST_SQUARES: u32 = 400;
 /// Bytes of a corner as text, about: its place, its colour, its number.
 const CORNER_TEXT: u64 = 100;
+/// Sky and haze are seen as they are.
+const CONSTANT: &str = "Surface \"constant\"";
+/// Haze stands before the sky, at this share of its distance.
+const BEFORE: f64 = 0.995;
 /// The sky stands at so many times the distance of the farthest of the scene.
 const BEHIND: f64 = 1.2;
 
@@ -45,9 +49,26 @@ pub(super) fn sheets(model: &Model, size: [u32; 2], digits: Digits) -> Vec<Sheet
             |(from, way): (DVec3, DVec3)| from + way * ((wall - depth(camera, from)) / depth(camera, camera.at + way));
         grid.polygon(rays.map(|(from, way)| (place((from, way)), model.sky.colour(way))).to_vec());
     }
-    let surface = "Surface \"constant\"".to_owned();
-    let sky = Sheet { name: "sky", surface, body: grid.text(digits), far: wall };
-    std::iter::once(sky).chain(ground).collect()
+    let sky = Sheet { name: "sky", surface: CONSTANT.to_owned(), body: grid.text(digits), far: wall };
+    std::iter::once(sky).chain(haze(model, size, wall, digits)).chain(ground).collect()
+}
+
+/// What the ground has faded into, from where it ends to the horizon, before a sky that is another colour there.
+fn haze(model: &Model, size: [u32; 2], wall: f64, digits: Digits) -> Option<Sheet> {
+    let endless = model.ground.filter(|ground| ground.radius.is_none())?;
+    let (Sky::Picture { .. }, camera) = (&model.sky, &model.camera) else { return None };
+    let meets = |[x, y]: [f64; 2]| {
+        let (from, way) = ray(camera, x, y);
+        let before = wall * BEFORE;
+        let p = from + way * ((before - depth(camera, from)) / depth(camera, camera.at + way));
+        (way.z < 0.0 && from.z > endless.height).then_some(p)
+    };
+    let mut grid = Grid::default();
+    for square in squares([1, 1], size) {
+        grid.polygon(clip(square, meets).into_iter().map(|p| (p, model.sky.at_horizon())).collect());
+    }
+    let sheet = |grid: Grid| Sheet { name: "haze", surface: CONSTANT.to_owned(), body: grid.text(digits), far: wall };
+    (!grid.corners.is_empty()).then(|| sheet(grid))
 }
 
 /// Squares across and down the sky.
@@ -63,7 +84,7 @@ fn sky_squares(model: &Model, size: [u32; 2]) -> [u32; 2] {
 pub(super) fn sheet_bytes_needed(model: &Model, size: [u32; 2]) -> u64 {
     let [across, down] = sky_squares(model, size).map(u64::from);
     let corners = 4 * (across * down + u64::from(SQUARES[0] * SQUARES[1]));
-    corners * (size_of::<(DVec3, Colour)>() as u64 + 4 * CORNER_TEXT)
+    corners * (size_of::<(DVec3, Colour)>() as u64 + 3 * CORNER_TEXT)
 }
 
 /// The part of the ground that the camera sees.

@@ -5,7 +5,9 @@ use crate::math::DVec3;
 /// Mean number of nodes of a maximal Poisson-disc sample for each cubic spacing of volume, and for each square one of area.
 const DENSITY: [f64; 2] = [0.75, 0.8];
 /// Peak memory, in bytes a node, of the construction of a graph.
-const NODE_BYTES: u64 = 420;
+const NODE_BYTES: f64 = 420.0;
+/// Bytes of the cells of a box where a node would have room: seven of them, as wide as the spacing over the root of 3.
+const ROOM_BYTES: f64 = 7.0 * 4.0;
 
 /// Larger estimates are refused: cells are counted by a `u32`.
 pub(super) const MOST_NODES: f64 = 1e8;
@@ -36,8 +38,8 @@ pub fn scatter_estimate(bounds: [DVec3; 2], spacing: f64, is_plane: bool) -> f64
     if is_plane { extent.x * extent.y * DENSITY[1] } else { extent.x * extent.y * extent.z * DENSITY[0] }
 }
 
-/// Peak memory, in bytes, of the construction of a graph with so many nodes.
+/// Peak memory, in bytes, of the construction of a graph in a box with room for so many nodes, a share of which is open.
 #[must_use]
-pub fn scatter_bytes(nodes: f64) -> u64 {
-    (nodes as u64).saturating_mul(NODE_BYTES)
+pub fn scatter_bytes(nodes: f64, open: f64) -> u64 {
+    (nodes * (open * NODE_BYTES + ROOM_BYTES)) as u64
 }

@@ -319,6 +319,29 @@ fn the_rest_of_the_command() {
     assert_eq!(output.status.code(), Some(1));
 }
 
+/// Over several seeds every claim is summed up: how often it held, and where it came nearest to failing.
+#[test]
+fn claims_are_summed_up_over_seeds() {
+    let folder = tempfile::tempdir().unwrap();
+    let check = ["check", "cactus", "--claims", "--seeds", "1-3"];
+    let said = succeed_in(folder.path(), &check);
+    assert!(said.lines().count() >= 3 && said.lines().all(|line| line.contains("holds in 3 of 3 runs")), "{said}");
+    // The worst of the three is the least of what single runs measure.
+    let spread = |seed: &str| {
+        let told = succeed_in(folder.path(), &["check", "cactus", "--claims", "--json", "--seed", seed]);
+        let findings = told.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap());
+        let own = findings.map(|line| line["finding"].clone()).find(|finding| finding["claim"] == "upright");
+        own.unwrap()["measured"].as_f64().unwrap()
+    };
+    let most = ["1", "2", "3"].map(spread).into_iter().fold(0.0, f64::max);
+    let line = said.lines().find(|line| line.contains("upright")).unwrap();
+    assert!(line.contains(&format!("at worst {most:.4}")), "{line} {most}");
+    let narrow = format!("claim.upright.at_most={}", most * 0.999);
+    let output = run_in(folder.path(), &[&check[..], &["--set", &narrow]].concat());
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stdout).contains("upright DOES NOT HOLD in"), "{}", text(&output.stdout));
+}
+
 #[test]
 fn info_measures_what_a_scene_claims() {
     let folder = tempfile::tempdir().unwrap();

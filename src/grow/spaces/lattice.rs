@@ -6,7 +6,6 @@ use serde::Deserialize;
 
 use crate::geom::{Bounds, Neighbours, Shape};
 use crate::graph::{CostField, Lattice, LatticeError, Mask, Window};
-use crate::grow::grown::NODE_BYTES;
 use crate::math::{DVec3, Stream, Weights, power};
 use crate::plan;
 
@@ -21,6 +20,8 @@ pub struct LatticeSpec {
     pub neighbours: Neighbours,
 }
 
+/// Bytes of a node of a path, and of the table where it is found again.
+const PATH_NODE_BYTES: u64 = 160;
 /// The union of least-cost paths over the length of a shortest tree: from 1.2 to 4 in the scenes (`benches/README.md`).
 const MEETING: f64 = 2.0;
 
@@ -139,7 +140,7 @@ impl LatticeSpace {
     #[must_use]
     pub fn bytes_with_paths(&self, paths: u64, each: u64) -> u64 {
         let nodes = self.window.nodes();
-        let skeleton = self.nodes_of_paths(paths) * NODE_BYTES;
+        let skeleton = self.nodes_of_paths(paths) * PATH_NODE_BYTES;
         self.bytes_needed().saturating_add(skeleton).saturating_add(nodes.saturating_mul(each))
     }
 

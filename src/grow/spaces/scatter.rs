@@ -182,7 +182,7 @@ impl ScatterSpace {
         let share = if self.clusters.is_some() { 1.0 } else { self.shape.bounds().share(is_open) };
         // Those of a Yao graph are counted with the nodes.
         let more = (self.edges_estimate() - 12.0 * self.estimate()).max(0.0) * 16.0;
-        scatter_bytes(self.estimate() * share).saturating_add((more * share) as u64)
+        scatter_bytes(self.estimate(), share).saturating_add((more * share) as u64)
     }
 
     /// The table of its weights.
