@@ -32,7 +32,8 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
     jobs.guard(&written)?;
     note_look(args, console);
     let mut tiles = Vec::new();
-    for (job, path) in jobs.list.clone().iter().zip(&outputs) {
+    for (i, path) in outputs.iter().enumerate() {
+        let job = &jobs.list[i];
         let begun = Instant::now();
         let screen = if keep && args.skip_existing && is_whole(path) {
             // Only a sheet needs what is there already.
@@ -56,9 +57,10 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
         if args.show.contains(&Show::Terminal) {
             terminal::show(&screen, console)?;
         }
-        // Kept until the sheet is made.
-        jobs.memory = jobs.memory.beside(screen.bytes.len() as u64);
+        let taken = screen.bytes.len() as u64;
         tiles.push(Tile { picture: screen, label: job.label.clone() });
+        // Kept until the sheet is made.
+        jobs.memory = jobs.memory.beside(taken);
     }
     console.done();
     if let Some(sheet) = &args.sheet {

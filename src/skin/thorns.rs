@@ -31,10 +31,14 @@ pub struct ThornsSpec {
 /// Radius of a thorn's tip over that of its foot.
 const POINT: f64 = 0.15;
 impl ThornsSpec {
-    /// Bytes that thorns on `skeletons` take at their peak.
+    /// Bytes that thorns on `skeletons` take at their peak; 0 where there are more than a body may have, which is told when they are
+    /// made.
     #[must_use]
     pub fn bytes_needed(&self, skeletons: &[&Skeleton]) -> u64 {
         let count = skeletons.iter().map(|s| s.area()).sum::<f64>() / (self.apart * self.apart);
+        if BodyError::check_count((count * 3.0) as usize).is_err() {
+            return 0;
+        }
         // Lists of unknown length are half empty at worst.
         (count * (2 * size_of::<Ball>() + size_of::<[u32; 2]>()) as f64 * 1.5) as u64
     }
