@@ -60,14 +60,20 @@ impl ThornsSpec {
         let digits = object.digits;
         // Walking along limbs, a thorn falls due each time that much of their surface has passed.
         let each = self.apart * self.apart;
+        let area = |[a, b]: [u32; 2]| {
+            let [a, b] = [a, b].map(|ball| limbs.balls[ball as usize]);
+            std::f64::consts::PI * (a.radius + b.radius) * a.centre.distance(b.centre)
+        };
+        // Before any is made.
+        let expected = limbs.segments.iter().map(|&segment| area(segment)).sum::<f64>() / each;
+        BodyError::check_count((expected * 3.0) as usize)?;
         let mut passed: f64 = random.random::<f64>() * each;
         let mut turn: f64 = 0.0;
         for &[a, b] in &limbs.segments {
+            let area = area([a, b]);
             let (a, b) = (limbs.balls[a as usize], limbs.balls[b as usize]);
             let along = b.centre - a.centre;
-            let length = along.length();
             let Some(way) = along.try_normalize() else { continue };
-            let area = std::f64::consts::PI * (a.radius + b.radius) * length;
             let side = way.any_orthonormal_vector();
             let start = passed;
             passed += area;

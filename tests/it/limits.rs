@@ -89,7 +89,7 @@ fn what_is_too_large_is_not_begun() {
         "--to",
         "pov",
         "--set",
-        "object.cactus.thorns={ length = 0.1, radius = 0.01, apart = 0.001 }",
+        "object.cactus.thorns={ length = 0.1, radius = 0.01, apart = 0.003 }",
     ];
     let triangles = ["export", "forest", "--to", "ply"];
     let layers = ["render", "elm", "--size", "2000x2000", "--samples", "1", "-o", "a.exr"];
