@@ -110,8 +110,8 @@ impl<P: Primitive<N>, const N: usize> Queries<P, N> {
         Self { level, tree, blocks, ids: order, bounds: whole, count: ids.len(), kind: PhantomData }
     }
 
-    /// Bytes that so many primitives take at the peak of construction: their boxes and order, and blocks and nodes as full as they are on average; and what
-    /// clusters a piece on each thread.
+    /// Bytes that so many primitives take at the peak of construction: their boxes and order, and blocks and
+    /// nodes as full as they are on average; and what clusters a piece on each thread.
     #[must_use]
     pub fn bytes_needed(count: usize) -> usize {
         let boxes = count * (size_of::<Aabb>() + size_of::<u32>());

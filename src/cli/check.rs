@@ -11,6 +11,7 @@ pub fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
     let jobs = Jobs::new(&args.scene, console)?;
     let mut worst = None;
     let mut tallies = Tallies::default();
+    let one_of_several = jobs.list.len() > args.scene.scenes.len();
     for job in &jobs.list {
         let progress = console.progress(job.name());
         let checked = jobs.load(job).and_then(|scene| {
@@ -39,7 +40,6 @@ pub fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
         match jobs.grow(&scene, &[], console, &progress) {
             Ok(grown) => {
                 console.done();
-                let one_of_several = jobs.list.iter().filter(|other| other.name() == job.name()).count() > 1;
                 tallies.add(job, &scene, check_claims(&scene, &grown), one_of_several, console);
             }
             Err(Failure::Stopped) => return Err(Failure::Stopped),

@@ -45,9 +45,7 @@ pub(super) fn sheets(model: &Model, size: [u32; 2], digits: Digits) -> Vec<Sheet
     for square in squares(count, size) {
         let rays = square.map(|[x, y]| ray(camera, x, y));
         // To the wall, which stands across the view.
-        let place =
-            |(from, way): (DVec3, DVec3)| from + way * ((wall - depth(camera, from)) / depth(camera, camera.at + way));
-        grid.polygon(rays.map(|(from, way)| (place((from, way)), model.sky.colour(way))).to_vec());
+        grid.polygon(rays.map(|(from, way)| (at_depth(camera, from, way, wall), model.sky.colour(way))).to_vec());
     }
     let sky = Sheet { name: "sky", surface: CONSTANT.to_owned(), body: grid.text(digits), far: wall };
     std::iter::once(sky).chain(haze(model, size, wall, digits)).chain(ground).collect()
@@ -59,16 +57,15 @@ fn haze(model: &Model, size: [u32; 2], wall: f64, digits: Digits) -> Option<Shee
     let (Sky::Picture { .. }, camera) = (&model.sky, &model.camera) else { return None };
     let meets = |[x, y]: [f64; 2]| {
         let (from, way) = ray(camera, x, y);
-        let before = wall * BEFORE;
-        let p = from + way * ((before - depth(camera, from)) / depth(camera, camera.at + way));
-        (way.z < 0.0 && from.z > endless.height).then_some(p)
+        let is_below = way.z < 0.0 && from.z > endless.height;
+        is_below.then(|| at_depth(camera, from, way, wall * BEFORE))
     };
     let mut grid = Grid::default();
     for square in squares([1, 1], size) {
         grid.polygon(clip(square, meets).into_iter().map(|p| (p, model.sky.at_horizon())).collect());
     }
-    let sheet = |grid: Grid| Sheet { name: "haze", surface: CONSTANT.to_owned(), body: grid.text(digits), far: wall };
-    (!grid.corners.is_empty()).then(|| sheet(grid))
+    let is_seen = !grid.corners.is_empty();
+    is_seen.then(|| Sheet { name: "haze", surface: CONSTANT.to_owned(), body: grid.text(digits), far: wall })
 }
 
 /// Squares across and down the sky.
@@ -147,6 +144,11 @@ fn clip(square: [[f64; 2]; 4], meets: impl Fn([f64; 2]) -> Option<DVec3>) -> Vec
 /// Distance along the view.
 fn depth(camera: &Camera, p: DVec3) -> f64 {
     (p - camera.at).dot(camera.frame()[2])
+}
+
+/// Where a ray is at this distance along the view.
+fn at_depth(camera: &Camera, from: DVec3, way: DVec3, far: f64) -> DVec3 {
+    from + way * ((far - depth(camera, from)) / depth(camera, camera.at + way))
 }
 
 /// The corners of squares that cover a picture of `size` pixels and one more beyond each edge, as fractions of it.

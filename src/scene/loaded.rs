@@ -50,12 +50,6 @@ impl Loaded {
         Self { recipe, show, claims, source: source.clone(), tree: tree.clone() }
     }
 
-    /// Bytes that growing it takes at its peak, step after step.
-    #[must_use]
-    pub fn bytes_needed(&self) -> u64 {
-        assemble::bytes_needed(&self.recipe)
-    }
-
     /// An error at `place`, a dotted path of keys.
     #[must_use]
     pub fn error(&self, place: &str, message: impl Into<String>) -> SceneError {

@@ -1,6 +1,7 @@
 //! Growth by voxels: what the automaton promises.
 
 use crate::support::plants::{degrees, grown, only, scene, way};
+use lichtenberg::assemble::bytes_needed;
 use lichtenberg::math::DVec3;
 use lichtenberg::scene::check_claims;
 use lichtenberg::skeleton::{Skeleton, nearest};
@@ -184,7 +185,7 @@ fn a_billion_voxels_are_allowed() {
         "[space.air]\nshape.box = { min = [0, 0, 0], max = [102.4, 102.4, 102.4] }\nforbid.sphere = { centre = [50, 50, 50], radius = 4 }\nnodes.voxels = { side = 0.1 }\n\
          [grow.plant]\nspace = \"air\"\nfrom.at = [[1, 1, 1]]\nwidth.constant = 0.01\nby.voxels = { step = 0.5, rounds = 30, nodes = 1000 }\n",
     );
-    assert!(large.bytes_needed() < 200_000_000, "{}", large.bytes_needed());
+    assert!(bytes_needed(&large.recipe) < 200_000_000, "{}", bytes_needed(&large.recipe));
     let all = grown(&large);
     assert_eq!(all[0].skeleton.nodes.len(), 31);
     assert!(all[0].nodes > 50_000, "{}", all[0].nodes);
