@@ -173,6 +173,10 @@ pub struct ExportArgs {
     /// Leave thorns to a displacement shader, thorns.sl, which is written too and must be compiled (rib)
     #[arg(long)]
     pub displace: bool,
+    /// How far limbs may be from their place, in pixels of the picture: what it is too coarse to show is left out; 0 by
+    /// default, since others may come nearer to the archive (rib)
+    #[arg(long, value_name = "PIXELS", value_parser = parse_amount)]
+    pub detail: Option<f64>,
     /// Compress the archive of the objects, which RIB renderers read as it is (rib)
     #[arg(long)]
     pub gzip: bool,
@@ -284,7 +288,7 @@ pub struct CompareArgs {
     pub metric: Option<MetricName>,
     /// Pictures differ above this value of the metric; by default 0.01 (flip), 0.05 (flip-95), 0.1 (flip-max), 2/255
     /// (max), 0.002 (rms), 0.001 (share)
-    #[arg(long, value_name = "X", value_parser = parse_threshold)]
+    #[arg(long, value_name = "X", value_parser = parse_amount)]
     pub threshold: Option<f64>,
     /// Compare these channels or layers of OpenEXR pictures, in place of R,G,B,A
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
@@ -556,9 +560,9 @@ fn parse_sweep(text: &str) -> Result<Sweep, String> {
     Ok(Sweep { path: change.path, values: values.into_iter().map(|v| v.trim().to_owned()).collect() })
 }
 
-fn parse_threshold(text: &str) -> Result<f64, String> {
+fn parse_amount(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("{text:?} is no number"))?;
-    if value >= 0.0 { Ok(value) } else { Err("a threshold is 0 or more".to_owned()) }
+    if value >= 0.0 && value.is_finite() { Ok(value) } else { Err("0 or more is wanted".to_owned()) }
 }
 
 fn parse_crop(text: &str) -> Result<[u32; 4], String> {

@@ -134,6 +134,9 @@ fn render_pov(
     decode_png(&picture).map_err(|e| wrong(e.to_string()))
 }
 
+/// How far limbs may be from their place in a picture made at once, in pixels: half the distance of samples, eight to a pixel's side.
+const UNSEEN: f64 = 1.0 / 16.0;
+
 /// The picture of a renderer that reads RIB.
 fn render_rib(
     renderer: RibRenderer,
@@ -148,7 +151,7 @@ fn render_rib(
         RibRenderer::Pixie => RibShadows::Rays,
         RibRenderer::Aqsis => RibShadows::Maps,
     };
-    let options = RibOptions { shadows, displace: false, linear: true };
+    let options = RibOptions { shadows, displace: false, linear: true, detail: UNSEEN };
     let rib = Rib::new(model, templates, SCENE, size, origin, options);
     let written = write_rib(&rib, folder, SCENE, false, true)?;
     for file in written.files.iter().filter(|file| file.extension().is_some_and(|ending| ending == "sl")) {

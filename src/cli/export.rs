@@ -33,7 +33,12 @@ pub fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
         check_name(name)?;
     }
     let paths = jobs.outputs(args.output.join(pattern).as_os_str())?;
-    let given = [("--shadows", args.shadows.is_some()), ("--displace", args.displace), ("--gzip", args.gzip)];
+    let given = [
+        ("--shadows", args.shadows.is_some()),
+        ("--displace", args.displace),
+        ("--detail", args.detail.is_some()),
+        ("--gzip", args.gzip),
+    ];
     if let Some((option, _)) = given.iter().find(|(_, is_given)| *is_given && args.to != Format::Rib) {
         return Err(Failure::Usage(format!("{option} is for RIB: use it with --to rib")));
     }
@@ -156,11 +161,12 @@ fn write(
         Format::Rib => {
             let origin = job.origin(scene.recipe.seed, "export");
             let shadows = args.shadows.map_or(RibShadows::default(), Shadows::of);
-            let options = RibOptions { shadows, displace: args.displace, linear: false };
+            let options =
+                RibOptions { shadows, displace: args.displace, linear: false, detail: args.detail.unwrap_or(0.0) };
             if args.displace && model.objects.iter().any(leans) {
                 console.note("note: displaced thorns stand upright: only those that are cones `lean`");
             }
-            ask(model, Rib::bytes_needed(model, scene.recipe.size), &jobs.memory)?;
+            ask(model, Rib::bytes_needed(model, scene.recipe.size, options), &jobs.memory)?;
             let rib = Rib::new(model, templates, target.name, scene.recipe.size, &origin, options);
             Ok(told(write_rib(&rib, target.folder, target.name, args.gzip, args.force)?, console))
         }

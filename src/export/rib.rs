@@ -1,5 +1,6 @@
 //! RenderMan RIB: a scene, and an archive of its objects, in what Pixie and Aqsis both take (`reference/rib.md`).
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
@@ -8,13 +9,15 @@ use super::rib_options::RibOptions;
 use super::rib_sheets::sheet_bytes_needed;
 use super::rib_values::{RibValues, has_casters, values};
 use super::{Origin, TemplateError, Templates};
-use crate::model::{Light, Model, Object, Pattern};
+use crate::model::{Body, Light, Limbs, Model, Object, Pattern};
 
 /// A model on its way to RIB.
 pub struct Rib<'a> {
     model: &'a Model,
     templates: &'a Templates,
     options: RibOptions,
+    /// Pixels across the picture.
+    width: u32,
     values: RibValues,
 }
 
@@ -29,13 +32,15 @@ impl<'a> Rib<'a> {
         origin: &Origin,
         options: RibOptions,
     ) -> Self {
-        Self { model, templates, options, values: values(model, name, size, origin, options) }
+        Self { model, templates, options, width: size[0], values: values(model, name, size, origin, options) }
     }
 
     /// Bytes that its texts take for a picture of `size` pixels, besides what is streamed.
     #[must_use]
-    pub fn bytes_needed(model: &Model, size: [u32; 2]) -> u64 {
-        sheet_bytes_needed(model, size)
+    pub fn bytes_needed(model: &Model, size: [u32; 2], options: RibOptions) -> u64 {
+        let limbs = model.objects.iter().filter_map(|object| object.body.limbs());
+        let fewer = limbs.filter(|_| options.detail > 0.0).map(Limbs::bytes_within).max();
+        sheet_bytes_needed(model, size) + fewer.unwrap_or(0)
     }
 
     /// The text of `NAME.rib`, without the line that tells whether it was edited.
@@ -106,9 +111,21 @@ impl<'a> Rib<'a> {
         let shown = |object: &&Object| is_wanted(object) && !(self.options.displace && is_thorns(object));
         for (handle, object) in (1..).zip(self.model.objects.iter().filter(shown)) {
             let (_, material) = &self.model.materials[object.material];
-            write_object(object, material, handle, self.options, &mut out)?;
+            write_object(&self.detailed(object), material, handle, self.options, &mut out)?;
         }
         Ok(())
+    }
+
+    /// `object`, without what the picture is too coarse to show.
+    fn detailed<'o>(&self, object: &'o Object) -> Cow<'o, Object> {
+        match &object.body {
+            Body::Limbs(limbs) if self.options.detail > 0.0 => {
+                let error = self.options.detail * object.pixel(&self.model.camera, self.width);
+                let (name, instances) = (object.name.clone(), object.instances.clone());
+                Cow::Owned(Object { name, instances, body: Body::Limbs(limbs.within(error)), ..*object })
+            }
+            _ => Cow::Borrowed(object),
+        }
     }
 }
 

@@ -22,4 +22,7 @@ pub struct RibOptions {
     /// Write the picture in linear light with 16 bits a channel, for whoever makes it one for the screen; otherwise it has 8, bent by
     /// a gamma of 2.2.
     pub linear: bool,
+    /// How far limbs may be from their place, in pixels of the picture: what it is too coarse to show is left out
+    /// ([`crate::model::Limbs::within`]). 0 leaves out nothing.
+    pub detail: f64,
 }

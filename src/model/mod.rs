@@ -7,6 +7,7 @@ mod appearance;
 mod body;
 mod body_error;
 mod camera;
+mod detail;
 mod digits;
 mod dome;
 mod frame;

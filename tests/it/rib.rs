@@ -283,3 +283,39 @@ fn a_renderer_that_speaks_has_failed() {
         .unwrap();
     assert!(output.status.code() == Some(3) && text(&output.stderr).contains("export --to rib"));
 }
+
+/// With a level of detail fewer limbs are written, and none of those left out strays farther from what is written, in the picture,
+/// than was allowed.
+#[test]
+fn detail_is_below_the_pixel() {
+    let model = modelled("elm");
+    let count = |archive: &str| archive.matches("TransformBegin").count();
+    let whole = exported(&model, RibOptions::default()).1;
+    for detail in [0.25, 2.0] {
+        let (scene, archive) = exported(&model, RibOptions { detail, ..RibOptions::default() });
+        assert!(count(&archive) < count(&whole), "nothing is left out");
+        let world = read(&scene, &archive);
+        let cones: Vec<_> = world.objects.iter().flat_map(|object| &object.3).filter_map(cone).collect();
+        // Pixels of a unit at unit depth: the angle is across the shorter side.
+        let pixels = 0.5 * world.format[1] / (world.fov.to_radians() * 0.5).tan();
+        for ball in model.objects.iter().flat_map(|object| &object.body.limbs().unwrap().balls).step_by(16) {
+            let depth = point(&world.camera, ball.centre.to_array())[2];
+            let strays = cones.iter().map(|&(a, ra, b, rb)| {
+                let along = ((ball.centre - a).dot(b - a) / (b - a).length_squared().max(1e-12)).clamp(0.0, 1.0);
+                let (centre, radius) = (a + (b - a) * along, ra + (rb - ra) * along);
+                centre.distance(ball.centre) + ball.radius - radius
+            });
+            let stray = strays.fold(f64::INFINITY, f64::min) * pixels / depth;
+            assert!(stray <= detail + 0.01, "{stray} of {detail} pixels");
+        }
+    }
+}
+
+/// A sphere is a cone without length.
+fn cone(primitive: &Primitive) -> Option<(DVec3, f64, DVec3, f64)> {
+    match *primitive {
+        Primitive::Sphere { centre, radius } => Some((centre.into(), radius, centre.into(), radius)),
+        Primitive::Frustum { a, ra, b, rb } => Some((a.into(), ra, b.into(), rb)),
+        Primitive::Polygons { .. } => None,
+    }
+}
