@@ -53,7 +53,7 @@ pub fn run() -> Result<(), Failure> {
     let mut points = Vec::new();
     for side in [24.0, 51.0, 110.0, 237.0] {
         let joining = Joining::Yao(Sectors::Orthants);
-        let plan = ScatterPlan { spacing: 1.0, is_plane: false, joining: &joining, fixed: &[], owner: None };
+        let plan = ScatterPlan { spacing: 1.0, keep: 1.0, is_plane: false, joining: &joining, fixed: &[], owner: None };
         let stream = Stream::new(1, "bench");
         let mut told = (0, 0, 0.0);
         let runs = if side > 200.0 { 1 } else { 3 };

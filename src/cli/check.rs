@@ -37,10 +37,13 @@ pub fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
             }
             continue;
         }
-        match jobs.grow(&scene, &[], console, &progress) {
-            Ok(grown) => {
+        let found = jobs
+            .grow(&scene, &[], console, &progress)
+            .and_then(|grown| Ok(check_claims(&scene, &grown, &jobs.memory, &progress)?));
+        match found {
+            Ok(findings) => {
                 console.done();
-                tallies.add(job, &scene, check_claims(&scene, &grown), one_of_several, console);
+                tallies.add(job, &scene, findings, one_of_several, console);
             }
             Err(Failure::Stopped) => return Err(Failure::Stopped),
             // Other seeds may grow.

@@ -53,6 +53,9 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
             .map_err(|e| Failure::Usage(e.to_string()))?;
         lap("export");
 
+        // They may grow other seeds, and are printed as JSON alone.
+        let claims =
+            if console.json { scene::check_claims(&scene, &grown, &jobs.memory, &progress)? } else { Vec::new() };
         let all = json!({
             "scene": job.name(),
             "title": scene.recipe.title,
@@ -65,7 +68,7 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
             "memory": memory::told(&jobs.memory),
             "seconds": seconds.iter().map(|(stage, s)| ((*stage).to_owned(), json!(s))).collect::<serde_json::Map<_, _>>(),
             "steps": grown.iter().map(step).collect::<Vec<_>>(),
-            "claims": scene::check_claims(&scene, &grown),
+            "claims": claims,
         });
         if console.json {
             console.result(&all);

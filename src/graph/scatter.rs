@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use rand::RngExt;
+
 use super::poisson::{CellGrid, poisson};
 use super::scatter_size::MOST_NODES;
 use super::triangular::{REACH, triangular};
@@ -11,6 +13,8 @@ use crate::math::{DVec3, Stream, mix};
 
 /// Side of a grid cell, in spacings: two rings of cells contain nearly every Yao neighbour.
 const CELL: f64 = 1.3;
+/// The stream of what is kept.
+const KEPT: u64 = u64::MAX;
 /// Which scattered nodes are joined by edges.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Joining {
@@ -27,6 +31,8 @@ pub enum Joining {
 pub struct ScatterPlan<'a> {
     /// Least distance between nodes, in scene units.
     pub spacing: f64,
+    /// The share of the nodes that are kept, at random: below 1 they fill the space as unevenly as so many darts do.
+    pub keep: f64,
     /// Does it lie in the plane z = 0?
     pub is_plane: bool,
     /// Which nodes are joined.
@@ -35,6 +41,13 @@ pub struct ScatterPlan<'a> {
     pub fixed: &'a [DVec3],
     /// The owner of a position: nodes of two different owners are not joined, unless one is 0.
     pub owner: Option<&'a (dyn Fn(DVec3) -> u8 + Sync)>,
+}
+
+impl ScatterPlan<'_> {
+    /// How far apart nodes would be if those that are kept lay evenly.
+    fn apart(&self) -> f64 {
+        self.spacing / if self.is_plane { libm::sqrt(self.keep) } else { libm::cbrt(self.keep) }
+    }
 }
 
 /// A scattered graph, as adjacency lists of directed edges. Weights are separate ([`Scatter::weigh`]), so that many sets of
@@ -108,7 +121,17 @@ impl Scatter {
             triangular(region, plan.spacing, plan.fixed)
         } else {
             let cells = CellGrid::new(bounds, plan.spacing, plan.is_plane);
-            poisson(region, &cells, plan.spacing, plan.fixed, stream)
+            let mut nodes = poisson(region, &cells, plan.spacing, plan.fixed, stream);
+            if plan.keep < 1.0 {
+                let mut kept = stream.nth(KEPT);
+                let mut fixed = plan.fixed.len();
+                nodes.retain(|_| {
+                    let is_fixed = fixed > 0;
+                    fixed = fixed.saturating_sub(1);
+                    is_fixed || kept.random::<f64>() < plan.keep
+                });
+            }
+            nodes
         };
         if positions.is_empty() {
             return Err(ScatterError::Empty);
@@ -117,7 +140,7 @@ impl Scatter {
         let owned = (!owners.is_empty()).then_some(&owners[..]);
         let (starts, ends) = match plan.joining {
             Joining::Yao(sectors) => {
-                let near = NodeGrid::new(&positions, owned, plan.spacing * CELL).yao(sectors);
+                let near = NodeGrid::new(&positions, owned, plan.apart() * CELL).yao(sectors);
                 both_ways(positions.len(), |i| {
                     near[i * sectors.count()..(i + 1) * sectors.count()].iter().copied().filter(|&j| j != u32::MAX)
                 })
@@ -276,7 +299,7 @@ mod tests {
 
     fn scatter(spacing: f64, is_plane: bool, joining: &Joining, seed: u64) -> Scatter {
         let fixed = [DVec3::new(0.3, 0.4, 0.0), DVec3::new(0.3, 0.4 + spacing * 0.5, 0.0)];
-        let plan = ScatterPlan { spacing, is_plane, joining, fixed: &fixed, owner: None };
+        let plan = ScatterPlan { spacing, keep: 1.0, is_plane, joining, fixed: &fixed, owner: None };
         Scatter::new(&plan, &Ball(1.0), &Stream::new(seed, "scatter")).unwrap()
     }
 

@@ -106,7 +106,14 @@ mod tests {
 
     #[test]
     fn inner_nodes_have_six_neighbours_at_the_spacing() {
-        let plan = ScatterPlan { spacing: 0.5, is_plane: true, joining: &Joining::Triangular, fixed: &[], owner: None };
+        let plan = ScatterPlan {
+            spacing: 0.5,
+            keep: 1.0,
+            is_plane: true,
+            joining: &Joining::Triangular,
+            fixed: &[],
+            owner: None,
+        };
         let graph = Scatter::new(&plan, &Square, &Stream::new(1, "triangles")).unwrap();
         // 24 rows fit, 0.433 apart, of 21 and of 20 nodes by turns.
         assert_eq!(graph.len(), 12 * 21 + 12 * 20);

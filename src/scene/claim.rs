@@ -37,12 +37,20 @@ pub struct Claim {
     #[serde(default = "one")]
     #[schemars(range(min = 1.0, max = 1e6))]
     pub times: f64,
-    /// For `shared`, `floating`, `crossings`, `apart`, `nearest` and `dimension`: the other step.
+    /// For `shared`, `floating`, `crossings`, `apart`, `nearest`, `dimension`, `endpoints` and `graph_nodes`: the other step.
     #[serde(default)]
     pub with: Option<Ref<Step>>,
     /// For `nearest`, `farthest` and `inside`: the shape.
     #[serde(default)]
     pub shape: Option<ShapeSpec>,
+    /// What is a matter of chance is claimed of the mean over so many seeds: the scene's, and those after it.
+    #[serde(default = "once")]
+    #[schemars(range(min = 1, max = 64))]
+    pub seeds: u32,
+    /// The frame of the animation that is claimed of, in place of the one that the scene is grown for.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub frame: Option<f64>,
 }
 
 /// A claim whose shape is resolved.
@@ -58,11 +66,15 @@ fn one() -> f64 {
     1.0
 }
 
+fn once() -> u32 {
+    1
+}
+
 /// What a claim measures: fields of [`crate::skeleton::Measurement`], and how two steps lie to each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
-    /// Number of paths.
+    /// Number of paths, with those of the step `with` where there is one.
     Endpoints,
     /// Total length of all limbs.
     Length,
@@ -120,7 +132,7 @@ pub enum Quantity {
     Bifurcation,
     /// Mean length of the limbs of the first order.
     Twig,
-    /// Nodes of the graph.
+    /// Nodes of the graph, with those of the step `with` where there is one.
     GraphNodes,
     /// Edges of the graph for each of its nodes.
     EdgesPerNode,

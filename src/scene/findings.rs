@@ -1,17 +1,21 @@
 //! What is measured of claims.
 
+use std::cmp::Ordering;
+
 use serde::Serialize;
 
-use super::claim::{Claimed, Quantity};
-use super::loaded::Loaded;
+use super::claim::{Claim, Claimed, Quantity};
+use super::load::load_frame;
+use super::loaded::{Loaded, Stage, grow};
 use crate::geom::{Shape, Surface};
 use crate::grow::{Grown, Regions, Step};
-use crate::math::{DVec3, Ref};
+use crate::math::{DVec3, Memory, Progress, Ref};
 use crate::skeleton::{Skeleton, apart, crossings, dimension, floating, measure_from, nearest, shared_ends};
 
 impl Quantity {
-    fn of(self, grown: &Grown, with: Option<&Skeleton>, shape: Option<&Shape>) -> f64 {
+    fn of(self, grown: &Grown, other: Option<&Grown>, shape: Option<&Shape>) -> f64 {
         let skeleton = &grown.skeleton;
+        let with = other.map(|other| &other.skeleton);
         let m = measure_from(skeleton, grown.foot);
         let distances =
             |shape: &Shape| -> Vec<f64> { skeleton.nodes.iter().map(|n| shape.distance(n.position)).collect() };
@@ -25,7 +29,7 @@ impl Quantity {
             Self::Strahler => m.strahler as f64,
             Self::Bifurcation => m.bifurcation,
             Self::Twig => m.twig,
-            Self::GraphNodes => grown.nodes as f64,
+            Self::GraphNodes => (grown.nodes + other.map_or(0, |other| other.nodes)) as f64,
             Self::EdgesPerNode => grown.edges as f64 / grown.nodes.max(1) as f64,
             Self::Dropped => grown.dropped as f64,
             Self::Trees => trees(skeleton).len() as f64,
@@ -47,7 +51,7 @@ impl Quantity {
                 let all = surfaces(grown);
                 all.iter().map(roughness).sum::<f64>() / all.len().max(1) as f64
             }
-            Self::Endpoints => m.endpoints as f64,
+            Self::Endpoints => (m.endpoints + with.map_or(0, |with| with.paths.len())) as f64,
             Self::Length => m.length,
             Self::Tortuosity => m.tortuosity,
             Self::Offset => m.offset,
@@ -122,8 +126,10 @@ pub struct Finding {
     pub claim: String,
     /// The claim in words.
     pub says: String,
-    /// The quantity that was measured.
+    /// The quantity that was measured: its mean, where the claim is about several seeds.
     pub measured: f64,
+    /// Standard deviation between these seeds; 0 where there is one.
+    pub spread: f64,
     /// What it was held against, in words.
     pub against: String,
     /// Does the claim hold?
@@ -132,53 +138,116 @@ pub struct Finding {
     pub margin: f64,
 }
 
-/// Measures every claim on the steps that were grown.
-#[must_use]
-pub fn check_claims(scene: &Loaded, grown: &[Grown]) -> Vec<Finding> {
+/// Measures every claim on the steps that were grown; where claims are about several seeds, or about a frame, `scene` is grown for
+/// these too.
+///
+/// # Errors
+/// [`Stage`] of what is grown.
+pub fn check_claims(
+    scene: &Loaded,
+    grown: &[Grown],
+    memory: &Memory,
+    progress: &Progress,
+) -> Result<Vec<Finding>, Stage> {
+    let mut readings: Vec<Vec<Reading>> = vec![Vec::new(); scene.claims.len()];
+    let claims = || scene.claims.values().map(|claimed| &claimed.claim);
+    let mut frames: Vec<Option<f64>> = claims().map(|claim| claim.frame).collect();
+    frames.sort_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
+    frames.dedup();
+    for frame in frames {
+        let mut other = match frame {
+            None => scene.clone(),
+            Some(frame) => {
+                let (source, overrides) = scene.origin();
+                load_frame(source, overrides, Some(frame))?
+            }
+        };
+        let most = claims().filter(|claim| claim.frame == frame).map(|claim| claim.seeds).max().unwrap_or(1);
+        for i in 0..most {
+            other.recipe.seed = scene.recipe.seed.wrapping_add(i.into());
+            let anew = if i == 0 && frame.is_none() { None } else { Some(grow(&other, &[], memory, progress)?) };
+            let grown = anew.as_deref().unwrap_or(grown);
+            for (readings, claimed) in readings.iter_mut().zip(scene.claims.values()) {
+                if claimed.claim.frame == frame && i < claimed.claim.seeds {
+                    readings.extend(reading(claimed, grown));
+                }
+            }
+        }
+    }
+    let findings = scene.claims.iter().zip(&readings).filter(|(_, readings)| !readings.is_empty());
+    Ok(findings.map(|((name, Claimed { claim, .. }), readings)| finding(name, claim, readings)).collect())
+}
+
+/// What was measured with one seed: of the claim's step, and of those that it is held against.
+#[derive(Clone, Copy)]
+struct Reading {
+    measured: f64,
+    same: f64,
+    than: f64,
+}
+
+/// Measures a claim; nothing where a step was not grown.
+fn reading(Claimed { claim, shape }: &Claimed, grown: &[Grown]) -> Vec<Reading> {
     let solids = |i: usize| grown[i].regions.as_ref().map(Regions::solid);
     let step = |name: &Ref<Step>| grown.iter().find(|g| g.name == name.name);
-    let findings = scene.claims.iter().filter_map(|(name, Claimed { claim, shape })| {
-        let with = claim.with.as_ref().and_then(step).map(|g| &g.skeleton);
-        let shape = shape.as_ref().map(|shape| shape.with_grown(&solids));
-        let measure = |step: &Grown, with| claim.measure.of(step, with, shape.as_ref());
-        let measured = measure(step(&claim.of)?, with);
-        let mut against = Vec::new();
-        let mut holds = true;
-        let mut margin = f64::INFINITY;
-        let mut within = |room: f64, of: f64| {
-            let share = room / if of == 0.0 { 1.0 } else { of.abs() };
-            margin = if share.is_nan() { f64::NEG_INFINITY } else { margin.min(share) };
-        };
-        if let Some(least) = claim.at_least {
-            against.push(format!("at least {least}"));
-            holds &= measured >= least;
-            within(measured - least, least);
-        }
-        if let Some(most) = claim.at_most {
-            against.push(format!("at most {most}"));
-            holds &= measured <= most;
-            within(most - measured, most);
-        }
-        if let Some(other) = &claim.as_of {
-            let same = measure(step(other)?, None);
-            against.push(format!("{same:.4} of `{}` to {}", other.name, claim.within));
-            holds &= (measured - same).abs() <= claim.within;
-            within(claim.within - (measured - same).abs(), claim.within);
-        }
-        if let Some(other) = &claim.more_than {
-            let than = measure(step(other)?, None);
-            against.push(format!("more than {} times {than:.4} of `{}`", claim.times, other.name));
-            holds &= measured > than * claim.times;
-            within(measured - than * claim.times, than * claim.times);
-        }
-        Some(Finding {
-            claim: name.clone(),
-            says: claim.says.clone(),
-            measured,
-            against: against.join(", "),
-            holds: holds && !against.is_empty(),
-            margin,
+    let shape = shape.as_ref().map(|shape| shape.with_grown(&solids));
+    let with = claim.with.as_ref().and_then(step);
+    let measure = |name: &Ref<Step>, with| step(name).map(|step| claim.measure.of(step, with, shape.as_ref()));
+    // A bound that is not asked for is not read.
+    let other = |name: &Option<Ref<Step>>| name.as_ref().map_or(Some(0.0), |name| measure(name, None));
+    let reading = || {
+        Some(Reading {
+            measured: measure(&claim.of, with)?,
+            same: other(&claim.as_of)?,
+            than: other(&claim.more_than)?,
         })
-    });
-    findings.collect()
+    };
+    reading().into_iter().collect()
+}
+
+/// Holds the mean of what was measured against the bounds.
+fn finding(name: &str, claim: &Claim, readings: &[Reading]) -> Finding {
+    let n = readings.len() as f64;
+    let mean = |part: fn(&Reading) -> f64| readings.iter().map(part).sum::<f64>() / n;
+    let (measured, same, than) = (mean(|r| r.measured), mean(|r| r.same), mean(|r| r.than));
+    let spread =
+        libm::sqrt(readings.iter().map(|r| (r.measured - measured) * (r.measured - measured)).sum::<f64>() / n);
+    let mut against = Vec::new();
+    // How much room each bound leaves, and of what.
+    let mut rooms = Vec::new();
+    if let Some(least) = claim.at_least {
+        against.push(format!("at least {least}"));
+        rooms.push((measured - least, least));
+    }
+    if let Some(most) = claim.at_most {
+        against.push(format!("at most {most}"));
+        rooms.push((most - measured, most));
+    }
+    if let Some(other) = &claim.as_of {
+        against.push(format!("{same:.4} of `{}` to {}", other.name, claim.within));
+        rooms.push((claim.within - (measured - same).abs(), claim.within));
+    }
+    let mut holds = rooms.iter().all(|&(room, _)| room >= 0.0);
+    if let Some(other) = &claim.more_than {
+        against.push(format!("more than {} times {than:.4} of `{}`", claim.times, other.name));
+        rooms.push((measured - than * claim.times, than * claim.times));
+        holds &= measured > than * claim.times;
+    }
+    let share = |&(room, of): &(f64, f64)| room / if of == 0.0 { 1.0 } else { of.abs() };
+    let margin = rooms
+        .iter()
+        .map(share)
+        .fold(f64::INFINITY, |least, share| if share.is_nan() { f64::NEG_INFINITY } else { least.min(share) });
+    if readings.len() > 1 {
+        against.push(format!("mean of {n} seeds, deviation {spread:.4}"));
+    }
+    Finding {
+        claim: name.to_owned(),
+        says: claim.says.clone(),
+        measured,
+        spread,
+        against: against.join(", "),
+        holds: holds && !rooms.is_empty(),
+        margin,
+    }
 }

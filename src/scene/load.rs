@@ -63,7 +63,7 @@ pub fn load_frame(source: &Source, overrides: &[Override], frame: Option<f64>) -
         None
     };
     match resolved {
-        Some(resolved) if mistakes.is_empty() => Ok(resolved),
+        Some(resolved) if mistakes.is_empty() => Ok(resolved.changed_by(overrides)),
         _ => Err(SceneError::new(source, mistakes)),
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::claim::Claimed;
 use super::mistake::{Mistake, SceneError};
 use super::source::Source;
-use super::tree::Entry;
+use super::tree::{Entry, Override};
 use crate::assemble::{self, AssembleError, ObjectKey, Recipe};
 use crate::geom::MarkKind;
 use crate::grow::{GrowError, Grown, Key, Step};
@@ -22,6 +22,7 @@ pub struct Loaded {
     /// What it claims.
     pub claims: BTreeMap<String, Claimed>,
     source: Source,
+    overrides: Vec<Override>,
     tree: Entry,
 }
 
@@ -47,7 +48,17 @@ impl Loaded {
         source: &Source,
         tree: &Entry,
     ) -> Self {
-        Self { recipe, show, claims, source: source.clone(), tree: tree.clone() }
+        Self { recipe, show, claims, source: source.clone(), overrides: Vec::new(), tree: tree.clone() }
+    }
+
+    /// Remembers what was changed when it was read.
+    pub(super) fn changed_by(self, overrides: &[Override]) -> Self {
+        Self { overrides: overrides.to_vec(), ..self }
+    }
+
+    /// What it was read from, and what was changed then.
+    pub(super) fn origin(&self) -> (&Source, &[Override]) {
+        (&self.source, &self.overrides)
     }
 
     /// An error at `place`, a dotted path of keys.

@@ -2,7 +2,7 @@
 
 use crate::support::plants::{degrees, grown, only, scene, way};
 use lichtenberg::assemble::bytes_needed;
-use lichtenberg::math::DVec3;
+use lichtenberg::math::{DVec3, Memory, Progress};
 use lichtenberg::scene::check_claims;
 use lichtenberg::skeleton::{Skeleton, nearest};
 use proptest::prelude::*;
@@ -205,7 +205,7 @@ fn limbs_cling_to_a_mesh() {
     let all = grown(&plant);
     assert!(all[0].skeleton.nodes.len() > 60, "{}", all[0].skeleton.nodes.len());
     // Claims measure the mesh itself.
-    let findings = check_claims(&plant, &all);
+    let findings = check_claims(&plant, &all, &Memory::default(), &Progress::default()).unwrap();
     assert!(findings.len() == 2 && findings.iter().all(|finding| finding.holds), "{findings:?}");
 }
 

@@ -81,7 +81,7 @@ fn voxels(nodes: VoxelNodesSpec, spec: &SpaceSpec, common: Common, lookup: &mut 
 }
 
 fn scatter(nodes: ScatterSpec, spec: &SpaceSpec, common: Common, lookup: &mut dyn Lookup) -> Option<ScatterSpace> {
-    let ScatterSpec { spacing, sectors, radius, plane } = nodes;
+    let ScatterSpec { spacing, sectors, radius, plane, keep } = nodes;
     let joining = match (sectors, radius) {
         (Some(_), Some(_)) => Err("nodes are joined either by `sectors` or within a `radius`".to_owned()),
         (_, Some(radius)) => Ok(Joining::Radius(radius)),
@@ -102,7 +102,8 @@ fn scatter(nodes: ScatterSpec, spec: &SpaceSpec, common: Common, lookup: &mut dy
         None => None,
     };
     let Common { shape, forbid, weights, fields, stream } = common;
-    let space = ScatterSpace { shape, forbid, spacing, is_plane: plane, joining, clusters, weights, fields, stream };
+    let space =
+        ScatterSpace { shape, forbid, spacing, keep, is_plane: plane, joining, clusters, weights, fields, stream };
     check_scatter("nodes.scatter", &space, lookup)?;
     Some(space)
 }
@@ -118,8 +119,18 @@ fn triangular(
     }
     let Common { shape, forbid, weights, fields, stream } = common;
     let (spacing, joining) = (nodes.spacing, Joining::Triangular);
-    let space =
-        ScatterSpace { shape, forbid, spacing, is_plane: true, joining, clusters: None, weights, fields, stream };
+    let space = ScatterSpace {
+        shape,
+        forbid,
+        spacing,
+        keep: 1.0,
+        is_plane: true,
+        joining,
+        clusters: None,
+        weights,
+        fields,
+        stream,
+    };
     check_scatter("nodes.triangular", &space, lookup)?;
     Some(space)
 }

@@ -29,6 +29,15 @@ pub struct ScatterSpec {
     /// Do they lie in the plane, with y up?
     #[serde(default)]
     pub plane: bool,
+    /// The share of the nodes that are kept, at random. Nodes fill their space evenly, until there is no room for another; the fewer
+    /// are kept, the more unevenly they lie, and a graph within a `radius` falls apart (2012, Fig. 22).
+    #[serde(default = "all")]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
+    pub keep: f64,
+}
+
+fn all() -> f64 {
+    1.0
 }
 
 /// A few volumes within a coarse shape: a sphere about each of a few points far apart, and a cone from it to the trunk
@@ -60,6 +69,8 @@ pub struct ScatterSpace {
     pub forbid: Option<Shape>,
     /// Least distance between nodes.
     pub spacing: f64,
+    /// The share of the nodes that are kept.
+    pub keep: f64,
     /// Do they lie in the plane?
     pub is_plane: bool,
     /// Which nodes are joined.
@@ -205,8 +216,14 @@ impl ScatterSpace {
     ) -> Result<Scattered, ScatterError> {
         let stream = Stream::new(seed, &format!("space/{}", self.stream));
         let weigh = |graph: &Scatter| graph.weigh(table, &self.fields, |p| p, &stream);
-        let plan =
-            ScatterPlan { spacing: self.spacing, is_plane: self.is_plane, joining: &self.joining, fixed, owner: None };
+        let plan = ScatterPlan {
+            spacing: self.spacing,
+            keep: self.keep,
+            is_plane: self.is_plane,
+            joining: &self.joining,
+            fixed,
+            owner: None,
+        };
         let Some(clusters) = &self.clusters else {
             let open = Open { shape: &self.shape, forbid: self.forbid.as_ref(), fixed };
             let graph = Scatter::new(&plan, &open, &stream)?;
@@ -265,6 +282,7 @@ impl ScatterSpace {
         };
         let plan = ScatterPlan {
             spacing: self.spacing,
+            keep: self.keep,
             is_plane: self.is_plane,
             joining: &joining,
             fixed: &fixed,

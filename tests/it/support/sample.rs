@@ -3,20 +3,30 @@
 use std::process::Command;
 
 /// Scenes that take longer than most others together, and grow as one of them does: for `./run-tests --all`.
-const HEAVY: [&str; 6] = ["aggregate", "forest", "ivy-word", "oak-summer", "papers/2007-fig11", "papers/2008-fig10"];
+const HEAVY: [&str; 8] = [
+    "aggregate",
+    "forest",
+    "ivy-word",
+    "oak-summer",
+    "papers/2007-fig11",
+    "papers/2008-fig10",
+    "papers/2012-fig20",
+    "papers/2012-fig22",
+];
 
 /// Is all to be tested, as by `./run-tests --all`?
 pub fn tests_all() -> bool {
     std::env::var_os("LICHTENBERG_TEST_ALL").is_some()
 }
 
-/// `size` of the names, none of them a heavy scene's, told on stderr; all with `LICHTENBERG_TEST_ALL` set.
+/// `size` of the names, none of them a heavy scene's, told on stderr; all with `LICHTENBERG_TEST_ALL` set. What follows a `#` tells
+/// several of a scene apart.
 pub fn sample(mut names: Vec<String>, size: usize) -> Vec<String> {
     if tests_all() {
         return names;
     }
     let commit = commit();
-    names.retain(|name| !HEAVY.contains(&name.as_str()));
+    names.retain(|name| !HEAVY.contains(&name.split('#').next().unwrap_or_default()));
     names.sort_by_key(|name| hash(&commit, name));
     names.truncate(size);
     super::tell(&format!("sample of {commit}: {}", names.join(", ")));

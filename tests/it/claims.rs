@@ -1,0 +1,93 @@
+//! The papers' scenes: their claims hold at any seed, and each can fail.
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use lichtenberg::math::{Memory, Progress};
+use lichtenberg::scene::{Finding, Stage, check_claims, grow};
+use rayon::prelude::*;
+
+use crate::support::sample::sample;
+use crate::support::{embedded, root, scene_names};
+
+/// The seeds that every scene is held to; a push takes two of them for each scene of a sample.
+const SEEDS: [u64; 8] = [1, 2, 3, 4, 5, 6, 7, 8];
+
+fn papers() -> Vec<String> {
+    scene_names().into_iter().filter(|name| name.starts_with("papers/")).collect()
+}
+
+/// What is found of a scene's claims with some changes.
+fn found(name: &str, changes: &[(&str, &str)]) -> Result<Vec<Finding>, Stage> {
+    let scene = embedded(name, changes);
+    let (memory, progress) = (Memory::default(), Progress::default());
+    let grown = grow(&scene, &[], &memory, &progress)?;
+    check_claims(&scene, &grown, &memory, &progress)
+}
+
+#[test]
+fn claims_hold_at_any_seed() {
+    let runs = papers().into_iter().flat_map(|name| SEEDS.map(|seed| format!("{name}#{seed}"))).collect();
+    let failed: Vec<String> = sample(runs, 32)
+        .par_iter()
+        .with_max_len(1)
+        .flat_map_iter(|run| {
+            let (name, seed) = run.split_once('#').unwrap();
+            let findings = found(name, &[("seed", seed)]).unwrap_or_else(|error| panic!("{run}: {error}"));
+            let broken = findings.into_iter().filter(|finding| !finding.holds);
+            broken.map(move |f| format!("{run}: {}: {}, not {} ({})", f.claim, f.measured, f.against, f.says))
+        })
+        .collect();
+    assert!(failed.is_empty(), "{failed:#?}");
+}
+
+/// Of the table beside the scenes, which says of each claim what changes of its scene break it.
+struct Mutation {
+    scene: String,
+    claim: String,
+    changes: Vec<(String, String)>,
+}
+
+fn mutations() -> Vec<Mutation> {
+    let text = fs::read_to_string(root().join("scenes/papers/mutations.tsv")).unwrap();
+    let row = |line: &str| {
+        let [scene, claim, changes @ ..] = &line.split('\t').collect::<Vec<_>>()[..] else { panic!("{line:?}") };
+        let parts = |change: &&str| change.split_once('=').map(|(path, value)| (path.to_owned(), value.to_owned()));
+        let changes = changes.iter().map(|change| parts(change).unwrap_or_else(|| panic!("{line:?} changes nothing")));
+        Mutation { scene: format!("papers/{scene}"), claim: (*claim).to_owned(), changes: changes.collect() }
+    };
+    text.lines().filter(|line| !line.starts_with('#')).map(row).collect()
+}
+
+#[test]
+fn every_claim_has_its_mutation() {
+    let written: BTreeSet<(String, String)> = mutations().into_iter().map(|m| (m.scene, m.claim)).collect();
+    let claims = |name: &String| embedded(name, &[]).claims.into_keys().collect::<Vec<_>>();
+    let claimed: BTreeSet<(String, String)> =
+        papers().iter().flat_map(|name| claims(name).into_iter().map(|claim| (name.clone(), claim))).collect();
+    let [missing, stale] =
+        [(&claimed, &written), (&written, &claimed)].map(|(a, b)| a.difference(b).collect::<Vec<_>>());
+    assert!(missing.is_empty() && stale.is_empty(), "without a mutation: {missing:?}; without a claim: {stale:?}");
+}
+
+/// A claim that survives its mutation says nothing.
+#[test]
+fn mutations_break_their_claims() {
+    let all = mutations();
+    let names = all.iter().map(|m| format!("{}#{}", m.scene, m.claim)).collect();
+    let sampled = sample(names, 40);
+    let survived: Vec<String> = sampled
+        .par_iter()
+        .with_max_len(1)
+        .filter(|name| {
+            let mutation = all.iter().find(|m| format!("{}#{}", m.scene, m.claim) == **name).unwrap();
+            let changes: Vec<_> =
+                mutation.changes.iter().map(|(path, value)| (path.as_str(), value.as_str())).collect();
+            let findings = found(&mutation.scene, &changes);
+            let findings = findings.unwrap_or_else(|error| panic!("{name}: {error}"));
+            findings.iter().find(|finding| finding.claim == mutation.claim).unwrap().holds
+        })
+        .cloned()
+        .collect();
+    assert!(survived.is_empty(), "these hold all the same: {survived:#?}");
+}
