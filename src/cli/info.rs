@@ -43,8 +43,12 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
         lap("load");
         let progress = console.progress(job.name());
         let grown = jobs.grow(&scene, &[], console, &progress)?;
-        console.done();
         lap("grow");
+        // They may grow other seeds, and are printed as JSON alone.
+        let claims =
+            if console.json { scene::check_claims(&scene, &grown, &jobs.memory, &progress)? } else { Vec::new() };
+        console.done();
+        lap("claims");
         let model = scene::model(&scene, &grown, scene.recipe.size, &jobs.memory, &progress)?;
         lap("model");
         let mut count = Count::default();
@@ -53,9 +57,6 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
             .map_err(|e| Failure::Usage(e.to_string()))?;
         lap("export");
 
-        // They may grow other seeds, and are printed as JSON alone.
-        let claims =
-            if console.json { scene::check_claims(&scene, &grown, &jobs.memory, &progress)? } else { Vec::new() };
         let all = json!({
             "scene": job.name(),
             "title": scene.recipe.title,

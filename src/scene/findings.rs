@@ -154,6 +154,7 @@ pub fn check_claims(
     let mut frames: Vec<Option<f64>> = claims().map(|claim| claim.frame).collect();
     frames.sort_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
     frames.dedup();
+    let memory = &memory.beside(grown.iter().map(|step| step.bytes() as u64).sum());
     for frame in frames {
         let mut other = match frame {
             None => scene.clone(),
