@@ -188,7 +188,7 @@ struct Reading {
 }
 
 /// Measures a claim; nothing where a step was not grown.
-fn reading(Claimed { claim, shape }: &Claimed, grown: &[Grown]) -> Vec<Reading> {
+fn reading(Claimed { claim, shape }: &Claimed, grown: &[Grown]) -> Option<Reading> {
     let solids = |i: usize| grown[i].regions.as_ref().map(Regions::solid);
     let step = |name: &Ref<Step>| grown.iter().find(|g| g.name == name.name);
     let shape = shape.as_ref().map(|shape| shape.with_grown(&solids));
@@ -196,14 +196,7 @@ fn reading(Claimed { claim, shape }: &Claimed, grown: &[Grown]) -> Vec<Reading> 
     let measure = |name: &Ref<Step>, with| step(name).map(|step| claim.measure.of(step, with, shape.as_ref()));
     // A bound that is not asked for is not read.
     let other = |name: &Option<Ref<Step>>| name.as_ref().map_or(Some(0.0), |name| measure(name, None));
-    let reading = || {
-        Some(Reading {
-            measured: measure(&claim.of, with)?,
-            same: other(&claim.as_of)?,
-            than: other(&claim.more_than)?,
-        })
-    };
-    reading().into_iter().collect()
+    Some(Reading { measured: measure(&claim.of, with)?, same: other(&claim.as_of)?, than: other(&claim.more_than)? })
 }
 
 /// Holds the mean of what was measured against the bounds.
