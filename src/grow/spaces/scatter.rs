@@ -181,8 +181,9 @@ impl ScatterSpace {
     /// About how many edges it has, each counted twice, where nodes are joined within a radius.
     #[must_use]
     pub fn edges_estimate(&self) -> f64 {
-        let nodes = self.estimate();
-        nodes * self.joining.degree(nodes, self.spacing, self.is_plane)
+        let nodes = self.estimate() * self.keep;
+        let apart = self.spacing / if self.is_plane { libm::sqrt(self.keep) } else { libm::cbrt(self.keep) };
+        nodes * self.joining.degree(nodes, apart, self.is_plane)
     }
 
     /// Bytes that planning in it takes at its peak.
@@ -192,8 +193,8 @@ impl ScatterSpace {
         let is_open = |p: DVec3| self.shape.contains(p) && !self.forbid.as_ref().is_some_and(|f| f.contains(p));
         let share = if self.clusters.is_some() { 1.0 } else { self.shape.bounds().share(is_open) };
         // Those of a Yao graph are counted with the nodes.
-        let more = (self.edges_estimate() - 12.0 * self.estimate()).max(0.0) * 16.0;
-        scatter_bytes(self.estimate(), share).saturating_add((more * share) as u64)
+        let more = (self.edges_estimate() - 12.0 * self.estimate() * self.keep).max(0.0) * 16.0;
+        scatter_bytes(self.estimate(), share * self.keep).saturating_add((more * share) as u64)
     }
 
     /// The table of its weights.
