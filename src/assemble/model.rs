@@ -104,8 +104,8 @@ fn marks(recipe: &Recipe, grown: &[Grown]) -> Vec<Mark> {
     for (i, step) in grown.iter().enumerate() {
         let offset = recipe.objects.iter().find(|o| o.steps.contains(&i)).map_or(DVec3::ZERO, |o| o.at);
         marks.extend(step.marks.iter().map(|mark| Mark {
-            kind: mark.kind,
             line: mark.line.iter().map(|&p| to_world(p + offset, recipe.is_flat)).collect(),
+            ..*mark
         }));
     }
     marks

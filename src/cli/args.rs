@@ -3,12 +3,10 @@
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
+use clap::{Args as ClapArgs, Parser, Subcommand};
 
+use super::choices::{Format, Look, MetricName, PlateOrigin, PlateSpace, Renderer, Shadows, Show};
 use super::place::{Place, parse_place};
-use crate::compare::Metric;
-use crate::export::Rib;
-use crate::geom::MarkKind;
 use crate::scene::Override;
 
 /// Grows branching natural things by least-cost paths through randomly weighted graphs, and hands them to renderers.
@@ -116,9 +114,10 @@ pub struct RenderArgs {
     /// Show the picture in the terminal too; or, of a schematic, draw these marks of the construction
     #[arg(long, value_enum, value_delimiter = ',', value_name = "MARKS", num_args = 0..=1, default_missing_value = "terminal")]
     pub show: Vec<Show>,
-    /// How it is lit: studio has light from the whole sky and a soft sun, exact is POV-Ray's local light to the pixel
-    #[arg(long, value_enum, default_value = "studio", conflicts_with = "schematic")]
-    pub look: Look,
+    /// How it is lit: studio (the default) has light from the whole sky and a soft sun, exact is POV-Ray's local light to the
+    /// pixel; a scene that is drawn as a schematic (`show`) is traced with either
+    #[arg(long, value_enum, conflicts_with = "schematic")]
+    pub look: Option<Look>,
     /// Samples a pixel, 1 for its middle alone; 8 by default in the studio look, 9 in the exact one, where they are a
     /// square grid, and the middle
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096), conflicts_with = "schematic")]
@@ -259,24 +258,6 @@ pub struct StrikeArgs {
     pub limits: LimitArgs,
 }
 
-/// A corner of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum PlateOrigin {
-    /// Places count from the top, as in picture viewers
-    TopLeft,
-    /// Places count from the bottom, as in Nuke
-    BottomLeft,
-}
-
-/// Colours of linear photographs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum PlateSpace {
-    /// ITU-R BT.709, the primaries of sRGB
-    Rec709,
-    /// ACEScg (AP1)
-    Acescg,
-}
-
 #[derive(Debug, ClapArgs)]
 pub struct CompareArgs {
     /// The expected picture, or a folder of them (.png, .exr)
@@ -316,36 +297,6 @@ pub struct CompareArgs {
     pub force: bool,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum MetricName {
-    /// Mean FLIP
-    Flip,
-    /// The FLIP that 95 % of the pixels stay below
-    #[value(name = "flip-95")]
-    Flip95,
-    /// The largest FLIP of any pixel (the default)
-    FlipMax,
-    /// Largest difference of a channel
-    Max,
-    /// Root-mean-square difference
-    Rms,
-    /// Share of pixels that differ by more than 2/255
-    Share,
-}
-
-impl From<MetricName> for Metric {
-    fn from(name: MetricName) -> Self {
-        match name {
-            MetricName::Flip => Self::Flip,
-            MetricName::Flip95 => Self::Flip95,
-            MetricName::FlipMax => Self::FlipMax,
-            MetricName::Max => Self::Max,
-            MetricName::Rms => Self::Rms,
-            MetricName::Share => Self::Share,
-        }
-    }
-}
-
 #[derive(Debug, ClapArgs)]
 pub struct NewArgs {
     /// Name of the new scene
@@ -382,115 +333,6 @@ pub struct CompletionsArgs {
     /// The shell
     #[arg(value_enum)]
     pub shell: clap_complete::Shell,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Renderer {
-    /// POV-Ray 3.7, which must be installed
-    Povray,
-    /// Pixie (`rndr`), which must be installed
-    Pixie,
-    /// Aqsis (`aqsis`), which must be installed
-    Aqsis,
-}
-
-impl Renderer {
-    /// What metadata call it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Povray => "povray",
-            Self::Pixie => "pixie",
-            Self::Aqsis => "aqsis",
-        }
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Shadows {
-    /// No shadows, for speed
-    None,
-    /// Traced by the light `raydistant`, which Pixie has: sharper
-    Rays,
-    /// Maps that the scene makes first, which Pixie and Aqsis both read
-    Maps,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Format {
-    /// POV-Ray: NAME.inc, and NAME.pov with NAME.ini to show it off
-    Pov,
-    /// RenderMan: NAME.rib, and NAME.archive.rib with the objects
-    Rib,
-    /// A schematic: NAME.svg
-    Svg,
-    /// A mesh for other programs, y up: NAME.obj (objects with `skin = "mesh"`)
-    Obj,
-    /// A mesh for other programs, z up: NAME.ply (objects with `skin = "mesh"`)
-    Ply,
-}
-
-impl Format {
-    /// The files that it may make of a scene called `name`.
-    pub fn files(self, name: &str) -> Vec<String> {
-        let endings: &[&str] = match self {
-            Self::Pov => &[".inc", ".pov", ".ini", "-sky.exr"],
-            Self::Rib => &[".rib", ".archive.rib", ".casters.rib"],
-            Self::Svg => &[".svg"],
-            Self::Obj => &[".obj"],
-            Self::Ply => &[".ply"],
-        };
-        let own = endings.iter().map(|ending| format!("{name}{ending}"));
-        own.chain(Rib::shader_files().filter(|_| self == Self::Rib)).collect()
-    }
-
-    /// The ending of the file that it makes, or of the first of them.
-    pub fn ending(self) -> &'static str {
-        match self {
-            Self::Pov => "inc",
-            Self::Rib => "rib",
-            Self::Svg => "svg",
-            Self::Obj => "obj",
-            Self::Ply => "ply",
-        }
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Look {
-    /// Soft: light from the whole sky, a sun with a size, a filmic curve
-    Studio,
-    /// What POV-Ray shows, to the pixel: sharp shadows, constant ambient light
-    Exact,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Show {
-    /// The picture, in the terminal
-    Terminal,
-    /// A dot a node of the graph
-    Nodes,
-    /// A line an edge
-    Edges,
-    /// A ring an endpoint
-    Endpoints,
-    /// Outlines of spaces and of where endpoints are placed
-    Shapes,
-    /// Lines of equal path cost
-    Contours,
-}
-
-impl Show {
-    /// The mark that it names, if it names one.
-    pub fn mark(self) -> Option<MarkKind> {
-        match self {
-            Self::Terminal => None,
-            Self::Nodes => Some(MarkKind::Nodes),
-            Self::Edges => Some(MarkKind::Edges),
-            Self::Endpoints => Some(MarkKind::Endpoints),
-            Self::Shapes => Some(MarkKind::Shapes),
-            Self::Contours => Some(MarkKind::Contours),
-        }
-    }
 }
 
 /// Seeds to go through, in order.

@@ -4,17 +4,19 @@ use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
-use super::args::{Look, RenderArgs, Renderer};
+use super::args::RenderArgs;
+use super::choices::{Look, Renderer};
 use super::console::Console;
 use super::error::Failure;
 use super::jobs::{Job, Jobs};
-use super::preview::{Drawn, samples, shine, trace, view};
+use super::memory::ask_beside;
+use super::preview::{Drawn, Means, means, samples, shine, trace, view};
 use super::write::{read_templates, write_pov, write_rib};
 use super::{memory, output};
 use crate::export::{Origin, Pov, Rib, RibOptions, RibShadows, SvgOptions, Templates, write_svg};
 use crate::files::{Rgba, Scratch, decode_light, decode_png, draw_svg};
 use crate::geom::MarkKind;
-use crate::math::Progress;
+use crate::math::{Memory, Progress};
 use crate::model::Model;
 use crate::render::{Povray, RibRenderer};
 use crate::scene::Loaded;
@@ -30,18 +32,24 @@ pub fn report(path: &Path, jobs: &Jobs, job: &Job, scene: &Loaded, begun: Instan
     output::tell(path, details, console);
 }
 
-/// Options that say how rays are traced mean nothing where light is drawn.
-fn refuse_tracing(args: &RenderArgs) -> Result<(), Failure> {
+/// Options that say how rays are traced mean nothing where lines or light are drawn; `data` is asked of an EXR.
+fn refuse_tracing(args: &RenderArgs, data: bool, means: Means) -> Result<(), Failure> {
+    let is_schematic = means == Means::Schematic;
     let given = [
         ("--samples", args.samples.is_some()),
         ("--crop", args.crop.is_some()),
         ("--transparent", args.transparent),
-        ("--look exact", args.look == Look::Exact),
+        ("--look exact", args.look == Some(Look::Exact)),
+        ("--bits 16", is_schematic && args.bits == "16"),
+        ("EXR", is_schematic && data),
     ];
+    let why = if is_schematic {
+        "this one has `show`, and is drawn as a schematic: add --look studio, or exact, to trace it"
+    } else {
+        "this one has a [view], where light is drawn"
+    };
     match given.iter().find(|(_, is_given)| *is_given) {
-        Some((option, _)) => Err(Failure::Usage(format!(
-            "{option} is for scenes that are traced; this one has a [view], where light is drawn"
-        ))),
+        Some((option, _)) => Err(Failure::Usage(format!("{option} is for scenes that are traced; {why}"))),
         None => Ok(()),
     }
 }
@@ -58,42 +66,39 @@ pub fn draw(
     console: &Console,
     progress: &Progress,
 ) -> Result<Drawn, Failure> {
-    if args.schematic {
-        return draw_schematic(args, jobs, scene, console, progress);
-    }
-    if scene.recipe.view.is_some() && args.with.is_none() {
-        refuse_tracing(args)?;
-        let model = jobs.model(scene, &[], console, progress)?;
-        return shine(scene, &model.strokes, &jobs.memory, progress).map(Drawn::Shone);
-    }
+    let means = means(args, scene);
     // What is wrong with the call is said before long work.
-    let view = view(args, scene.recipe.size, data, &jobs.memory)?;
-    let model = jobs.model(scene, &[], console, progress)?;
-    let Some(with) = args.with else { return trace(&model, &view, &jobs.memory, progress) };
-    let templates = read_templates(args.templates.as_deref())?;
-    let folder =
-        Scratch::new().map_err(|e| Failure::Usage(format!("cannot make a folder for the renderer's files: {e}")))?;
-    let size = scene.recipe.size;
-    let origin = job.origin(scene.recipe.seed, "render");
-    let renderer = match with {
-        Renderer::Povray => None,
-        Renderer::Pixie => Some(RibRenderer::Pixie),
-        Renderer::Aqsis => Some(RibRenderer::Aqsis),
-    };
-    let picture = if let Some(renderer) = renderer {
-        render_rib(renderer, &model, &templates, folder.path(), size, &origin, progress)?
-    } else {
-        let pov = Pov::new(&model, &templates, SCENE, size, &origin);
-        let povray = Povray {
-            size,
-            crop: view.crop,
-            samples: libm::round(libm::sqrt(f64::from(samples(args)))) as u32,
-            declare: (args.look == Look::Exact).then(|| format!("{}=1", pov.exact())),
-            threads,
-        };
-        render_pov(&pov, &povray, folder.path(), console, progress)?
-    };
-    Ok(Drawn::Screen(cut(&picture, view.crop)))
+    if matches!(means, Means::Schematic | Means::Glow) {
+        refuse_tracing(args, data, means)?;
+    }
+    match means {
+        Means::Schematic => draw_schematic(args, jobs, scene, console, progress),
+        Means::Glow => {
+            let model = jobs.model(scene, &[], console, progress)?;
+            shine(scene, &model.strokes, &jobs.memory, progress).map(Drawn::Shone)
+        }
+        Means::Preview => {
+            let view = view(args, scene.recipe.size, data, &jobs.memory)?;
+            let model = jobs.model(scene, &[], console, progress)?;
+            trace(&model, &view, &jobs.memory, progress)
+        }
+        Means::Outside(renderer) => {
+            let view = view(args, scene.recipe.size, data, &jobs.memory)?;
+            let model = jobs.model(scene, &[], console, progress)?;
+            let templates = read_templates(args.templates.as_deref())?;
+            let folder = Scratch::new()
+                .map_err(|e| Failure::Usage(format!("cannot make a folder for the renderer's files: {e}")))?;
+            let origin = job.origin(scene.recipe.seed, "render");
+            let files = Files { model: &model, templates: &templates, folder: folder.path(), origin: &origin };
+            let size = scene.recipe.size;
+            let picture = match renderer {
+                Renderer::Povray => files.render_pov(args, size, view.crop, threads, console, progress),
+                Renderer::Pixie => files.render_rib(RibRenderer::Pixie, size, &jobs.memory, progress),
+                Renderer::Aqsis => files.render_rib(RibRenderer::Aqsis, size, &jobs.memory, progress),
+            }?;
+            Ok(Drawn::Screen(cut(&picture, view.crop)))
+        }
+    }
 }
 
 /// What files of renderers are called.
@@ -116,55 +121,74 @@ fn draw_schematic(
     draw_svg(&String::from_utf8_lossy(&svg), &[]).map(Drawn::Screen).map_err(|e| Failure::Usage(e.to_string()))
 }
 
-/// The picture of POV-Ray.
-fn render_pov(
-    pov: &Pov<'_>,
-    povray: &Povray,
-    folder: &Path,
-    console: &Console,
-    progress: &Progress,
-) -> Result<Rgba, Failure> {
-    write_pov(pov, folder, SCENE, true)?;
-    let rendered = povray.render(folder, "scene.pov", "scene.png", progress)?;
-    for warning in &rendered.warnings {
-        console.note(&format!("povray: {warning}"));
-    }
-    let wrong = |e: String| Failure::Outside(format!("povray's picture cannot be read: {e}"));
-    let picture = fs::read(folder.join("scene.png")).map_err(|e| wrong(e.to_string()))?;
-    decode_png(&picture).map_err(|e| wrong(e.to_string()))
-}
-
 /// How far limbs may be from their place in a picture made at once, in pixels: half the distance of samples, eight to a pixel's side.
 const UNSEEN: f64 = 1.0 / 16.0;
 
-/// The picture of a renderer that reads RIB.
-fn render_rib(
-    renderer: RibRenderer,
-    model: &Model,
-    templates: &Templates,
-    folder: &Path,
-    size: [u32; 2],
-    origin: &Origin,
-    progress: &Progress,
-) -> Result<Rgba, Failure> {
-    let shadows = match renderer {
-        RibRenderer::Pixie => RibShadows::Rays,
-        RibRenderer::Aqsis => RibShadows::Maps,
-    };
-    let options = RibOptions { shadows, displace: false, linear: true, detail: UNSEEN };
-    let rib = Rib::new(model, templates, SCENE, size, origin, options);
-    let written = write_rib(&rib, folder, SCENE, false, true)?;
-    for file in written.files.iter().filter(|file| file.extension().is_some_and(|ending| ending == "sl")) {
-        renderer.compile(folder, &file.file_name().unwrap_or_default().to_string_lossy(), progress)?;
+/// What an outside renderer reads.
+struct Files<'a> {
+    model: &'a Model,
+    templates: &'a Templates,
+    folder: &'a Path,
+    origin: &'a Origin,
+}
+
+impl Files<'_> {
+    /// The picture of POV-Ray.
+    fn render_pov(
+        &self,
+        args: &RenderArgs,
+        size: [u32; 2],
+        crop: [u32; 4],
+        threads: Option<usize>,
+        console: &Console,
+        progress: &Progress,
+    ) -> Result<Rgba, Failure> {
+        let pov = Pov::new(self.model, self.templates, SCENE, size, self.origin);
+        let povray = Povray {
+            size,
+            crop,
+            samples: libm::round(libm::sqrt(f64::from(samples(args)))) as u32,
+            declare: (args.look == Some(Look::Exact)).then(|| format!("{}=1", pov.exact())),
+            threads,
+        };
+        write_pov(&pov, self.folder, SCENE, true)?;
+        let rendered = povray.render(self.folder, "scene.pov", "scene.png", progress)?;
+        for warning in &rendered.warnings {
+            console.note(&format!("povray: {warning}"));
+        }
+        let wrong = |e: String| Failure::Outside(format!("povray's picture cannot be read: {e}"));
+        let picture = fs::read(self.folder.join("scene.png")).map_err(|e| wrong(e.to_string()))?;
+        decode_png(&picture).map_err(|e| wrong(e.to_string()))
     }
-    renderer.render(folder, "scene.rib", "scene.tif", progress)?;
-    let wrong = |e: String| Failure::Outside(format!("{}'s picture cannot be read: {e}", renderer.program()));
-    let bytes = fs::read(folder.join("scene.tif")).map_err(|e| wrong(e.to_string()))?;
-    let picture = decode_light(&bytes).map_err(|e| wrong(e.to_string()))?;
-    if picture.bytes.chunks_exact(4).all(|pixel| pixel[..3] == picture.bytes[..3]) {
-        return Err(wrong("it is blank".to_owned()));
+
+    /// The picture of a renderer that reads RIB.
+    fn render_rib(
+        &self,
+        renderer: RibRenderer,
+        size: [u32; 2],
+        memory: &Memory,
+        progress: &Progress,
+    ) -> Result<Rgba, Failure> {
+        let shadows = match renderer {
+            RibRenderer::Pixie => RibShadows::Rays,
+            RibRenderer::Aqsis => RibShadows::Maps,
+        };
+        let options = RibOptions { shadows, displace: false, linear: true, detail: UNSEEN };
+        ask_beside(self.model, Rib::bytes_needed(self.model, size, options), memory)?;
+        let rib = Rib::new(self.model, self.templates, SCENE, size, self.origin, options);
+        let written = write_rib(&rib, self.folder, SCENE, false, true)?;
+        for file in written.files.iter().filter(|file| file.extension().is_some_and(|ending| ending == "sl")) {
+            renderer.compile(self.folder, &file.file_name().unwrap_or_default().to_string_lossy(), progress)?;
+        }
+        renderer.render(self.folder, "scene.rib", "scene.tif", progress)?;
+        let wrong = |e: String| Failure::Outside(format!("{}'s picture cannot be read: {e}", renderer.program()));
+        let bytes = fs::read(self.folder.join("scene.tif")).map_err(|e| wrong(e.to_string()))?;
+        let picture = decode_light(&bytes).map_err(|e| wrong(e.to_string()))?;
+        if picture.bytes.chunks_exact(4).all(|pixel| pixel[..3] == picture.bytes[..3]) {
+            return Err(wrong("it is blank".to_owned()));
+        }
+        Ok(picture)
     }
-    Ok(picture)
 }
 
 /// A part of a picture: left, top, width, height.

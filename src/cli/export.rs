@@ -6,11 +6,12 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::slice;
 
-use super::args::{ExportArgs, Format, Shadows};
+use super::args::ExportArgs;
+use super::choices::{Format, Shadows};
 use super::console::Console;
 use super::error::Failure;
 use super::jobs::{Job, Jobs};
-use super::memory;
+use super::memory::{self, ask_beside};
 use super::output::{self, is_stdout};
 use super::render::check_name;
 use super::shown;
@@ -115,12 +116,6 @@ fn is_whole(path: &Path) -> bool {
     read.is_ok() && end == *b"\n"
 }
 
-/// Asks for what writing `model` takes beside it.
-fn ask(model: &Model, needed: u64, memory: &Memory) -> Result<(), Failure> {
-    let asked = memory.beside(model.bytes() as u64).ask(needed);
-    asked.map_err(|error| Failure::Usage(format!("writing the scene needs {error}: raise --max-memory")))
-}
-
 /// Writes `model` in a format of one file.
 fn write_one(to: Format, path: &Path, scene: &Loaded, model: &Model, memory: &Memory) -> Result<(), Failure> {
     let needed = match to {
@@ -128,7 +123,7 @@ fn write_one(to: Format, path: &Path, scene: &Loaded, model: &Model, memory: &Me
         Format::Ply => ply_bytes_needed(model),
         Format::Svg | Format::Pov | Format::Rib => 0,
     };
-    ask(model, needed, memory)?;
+    ask_beside(model, needed, memory)?;
     output::write(path, |out| match to {
         Format::Obj => write_obj(model, out),
         Format::Ply => write_ply(model, out),
@@ -166,7 +161,7 @@ fn write(
             if args.displace && model.objects.iter().any(leans) {
                 console.note("note: displaced thorns stand upright: only those that are cones `lean`");
             }
-            ask(model, Rib::bytes_needed(model, scene.recipe.size, options), &jobs.memory)?;
+            ask_beside(model, Rib::bytes_needed(model, scene.recipe.size, options), &jobs.memory)?;
             let rib = Rib::new(model, templates, target.name, scene.recipe.size, &origin, options);
             Ok(told(write_rib(&rib, target.folder, target.name, args.gzip, args.force)?, console))
         }

@@ -8,8 +8,10 @@ use std::sync::Once;
 use std::thread;
 use std::time::Duration;
 
+use super::error::Failure;
 use crate::files::exit;
 use crate::math::Memory;
+use crate::model::Model;
 
 /// Where nothing else is known.
 const FALLBACK: u64 = 4 << 30;
@@ -25,6 +27,15 @@ pub fn held(max_memory: Option<u64>) -> Memory {
 pub fn told(memory: &Memory) -> serde_json::Value {
     let peak = fs::read_to_string("/proc/self/status").ok().and_then(|status| kilobytes(&status, "VmHWM:"));
     serde_json::json!({ "estimated": OWN + memory.most(), "peak": peak })
+}
+
+/// Asks for what writing `model` takes beside it.
+///
+/// # Errors
+/// Where that is more than allowed.
+pub fn ask_beside(model: &Model, needed: u64, memory: &Memory) -> Result<(), Failure> {
+    let asked = memory.beside(model.bytes() as u64).ask(needed);
+    asked.map_err(|error| Failure::Usage(format!("writing the scene needs {error}: raise --max-memory")))
 }
 
 /// The default of `--max-memory`, in bytes.

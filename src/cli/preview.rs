@@ -3,7 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::args::{Look, RenderArgs, Renderer};
+use super::args::RenderArgs;
+use super::choices::{Look, Renderer};
 use super::error::Failure;
 use super::output;
 use crate::files::{Rgba, encode_png};
@@ -31,17 +32,41 @@ pub enum Drawn {
     Screen(Rgba),
 }
 
+/// What a scene becomes a picture by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Means {
+    /// A drawing: strokes on white, and marks of the construction.
+    Schematic,
+    /// Light, where the scene has a view.
+    Glow,
+    /// Our own tracer.
+    Preview,
+    /// A renderer that is installed.
+    Outside(Renderer),
+}
+
+/// What `scene` becomes a picture by: one that shows its construction is drawn, unless a look is asked for.
+pub fn means(args: &RenderArgs, scene: &Loaded) -> Means {
+    let is_drawn = args.schematic || (!scene.show.is_empty() && args.look.is_none());
+    match args.with {
+        Some(renderer) => Means::Outside(renderer),
+        None if is_drawn => Means::Schematic,
+        None if scene.recipe.view.is_some() => Means::Glow,
+        None => Means::Preview,
+    }
+}
+
 /// The look as the tracer calls it.
 pub fn look(args: &RenderArgs) -> trace::Look {
     match args.look {
-        Look::Studio => trace::Look::Studio,
-        Look::Exact => trace::Look::Exact,
+        None | Some(Look::Studio) => trace::Look::Studio,
+        Some(Look::Exact) => trace::Look::Exact,
     }
 }
 
 /// Samples a pixel.
 pub fn samples(args: &RenderArgs) -> u32 {
-    args.samples.unwrap_or(SAMPLES[usize::from(args.look == Look::Exact)])
+    args.samples.unwrap_or(SAMPLES[usize::from(args.look == Some(Look::Exact))])
 }
 
 /// What is asked for of a picture of `size`, within `memory`; `data` keeps what an EXR holds besides colours.
@@ -184,17 +209,19 @@ pub fn is_png(path: &Path) -> bool {
 
 /// What shapes a picture besides its scene.
 fn how(args: &RenderArgs, scene: &Loaded) -> serde_json::Value {
-    if scene.recipe.view.is_some() && args.with.is_none() && !args.schematic {
-        return serde_json::json!({ "renderer": "glow", "size": scene.recipe.size });
-    }
-    if args.schematic {
-        return serde_json::json!({ "renderer": "schematic", "size": scene.recipe.size });
-    }
+    let renderer = match means(args, scene) {
+        means @ (Means::Glow | Means::Schematic) => {
+            let renderer = if means == Means::Glow { "glow" } else { "schematic" };
+            return serde_json::json!({ "renderer": renderer, "size": scene.recipe.size });
+        }
+        Means::Preview => "preview",
+        Means::Outside(renderer) => renderer.name(),
+    };
     serde_json::json!({
-        "renderer": args.with.map_or("preview", Renderer::name),
+        "renderer": renderer,
         "size": scene.recipe.size,
         "crop": args.crop,
-        "look": if args.look == Look::Studio { "studio" } else { "exact" },
+        "look": if look(args) == trace::Look::Studio { "studio" } else { "exact" },
         "samples": samples(args),
         "transparent": args.transparent,
     })

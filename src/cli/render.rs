@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::args::{Look, RenderArgs, Renderer, Show};
+use super::args::RenderArgs;
+use super::choices::{Look, Renderer, Show};
 use super::compare::to_screen;
 use super::console::Console;
 use super::draw::{draw, report};
@@ -91,7 +92,7 @@ fn check(args: &RenderArgs, outputs: &[PathBuf]) -> Result<(), Failure> {
 
 /// Tells that RIB has one look, where another is asked for.
 fn note_look(args: &RenderArgs, console: &Console) {
-    if matches!(args.with, Some(Renderer::Pixie | Renderer::Aqsis)) && args.look == Look::Studio {
+    if matches!(args.with, Some(Renderer::Pixie | Renderer::Aqsis)) && args.look != Some(Look::Exact) {
         console.note("note: RIB shows the exact look (--look exact); the studio look is the preview's and POV-Ray's");
     }
 }

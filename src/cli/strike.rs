@@ -7,7 +7,8 @@ use std::time::Instant;
 
 use rand::RngExt;
 
-use super::args::{PlateOrigin, PlateSpace, Seeds, StrikeArgs};
+use super::args::{Seeds, StrikeArgs};
+use super::choices::{PlateOrigin, PlateSpace};
 use super::console::Console;
 use super::error::Failure;
 use super::guard::refuse_inputs;

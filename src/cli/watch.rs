@@ -9,13 +9,14 @@ use std::time::{Duration, Instant};
 
 use notify::{RecommendedWatcher, RecursiveMode, Watcher};
 
-use super::args::{RenderArgs, Show};
+use super::args::RenderArgs;
+use super::choices::Show;
 use super::console::Console;
 use super::draw::{draw, report};
 use super::error::Failure;
 use super::jobs::Jobs;
 use super::output::is_stdout;
-use super::preview::{Drawn, is_exr, trace, view};
+use super::preview::{Drawn, Means, is_exr, means, trace, view};
 use super::{pattern, shown, terminal};
 use crate::math::Progress;
 use crate::trace::RenderSettings;
@@ -178,8 +179,8 @@ fn once(
         report(output, &jobs, job, &scene, begun, console);
         Ok(())
     };
-    if args.with.is_some() || args.schematic || scene.recipe.view.is_some() {
-        return finish(draw(args, &jobs, job, &scene, false, threads, console, progress)?);
+    if means(args, &scene) != Means::Preview {
+        return finish(draw(args, &jobs, job, &scene, is_exr(output), threads, console, progress)?);
     }
     let fine = view(args, scene.recipe.size, is_exr(output), &jobs.memory)?;
     let model = jobs.model(&scene, &[], console, progress)?;

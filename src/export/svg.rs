@@ -14,6 +14,10 @@ pub struct SvgOptions {
     pub size: [u32; 2],
 }
 
+/// So many nodes or edges are drawn as wide as any line.
+const FEW_MARKS: f64 = 1000.0;
+/// Steps of tone and width that edges have by what they cost.
+const COST_STEPS: u32 = 8;
 /// No stroke is drawn thinner than this radius, in pixels: it would vanish.
 const HAIRLINE: f64 = 0.35;
 
@@ -31,7 +35,8 @@ pub fn write_svg(model: &Model, options: SvgOptions, mut out: impl Write) -> io:
     writeln!(out, r##"<rect width="{width}" height="{height}" fill="#fff"/>"##)?;
     let view = Sheet { camera: &model.camera, size: options.size };
     // What paths run over comes first, what they run between last.
-    for kind in [MarkKind::Nodes, MarkKind::Edges, MarkKind::Contours, MarkKind::Shapes] {
+    write_costs(&model.marks, view, &mut out)?;
+    for kind in [MarkKind::Edges, MarkKind::Nodes, MarkKind::Sectors, MarkKind::Contours, MarkKind::Shapes] {
         write_marks(&model.marks, kind, view, &mut out)?;
     }
     for object in &model.objects {
@@ -100,6 +105,11 @@ struct Sheet<'a> {
 }
 
 impl Sheet<'_> {
+    /// A pixel of a picture whose shorter side has 600.
+    fn unit(&self) -> f64 {
+        f64::from(self.size[0].min(self.size[1])) / 600.0
+    }
+
     fn disc(&self, centre: DVec3, radius: f64) -> Option<Disc> {
         let Projected { x, y, scale, .. } = self.camera.project(centre)?;
         let [width, height] = self.size.map(f64::from);
@@ -139,42 +149,72 @@ fn write_stroke(a: Disc, b: Disc, out: &mut impl Write) -> io::Result<()> {
     )
 }
 
+/// Edges by what they cost, in steps: the least wide and dark, and over the others.
+fn write_costs(marks: &[Mark], view: Sheet<'_>, out: &mut impl Write) -> io::Result<()> {
+    let step = |mark: &Mark| ((mark.cost * f64::from(COST_STEPS)) as u32).min(COST_STEPS - 1);
+    for at in (0..COST_STEPS).rev() {
+        let share = f64::from(at) / f64::from(COST_STEPS - 1);
+        let edges = marks.iter().filter(|mark| mark.kind == MarkKind::Costs && step(mark) == at);
+        let lines: String = edges.map(|mark| polyline(&mark.line, view)).collect();
+        let grey = (70.0 + 160.0 * share) as u8;
+        let colour = &format!("#{grey:02x}{grey:02x}{grey:02x}");
+        write_lines(&lines, &Pen { colour, width: (2.8 - 2.2 * share) * boldness(marks, MarkKind::Costs), is_dashed: false }, view, out)?;
+    }
+    Ok(())
+}
+
+/// How much wider than others the marks of a graph are drawn: by their number, up to twice where there are few.
+fn boldness(marks: &[Mark], kind: MarkKind) -> f64 {
+    let count = marks.iter().filter(|mark| mark.kind == kind).count();
+    libm::sqrt(FEW_MARKS / count.max(1) as f64).clamp(0.5, 2.0)
+}
+
+/// Lines through the points, as they are seen.
+fn polyline(line: &[DVec3], view: Sheet<'_>) -> String {
+    let points = line.iter().filter_map(|&p| view.disc(p, 0.0)).zip(0_usize..);
+    points.map(|(Disc { centre: p, .. }, i)| format!("{}{:.2} {:.2}", if i == 0 { 'M' } else { 'L' }, p.x, p.y)).collect()
+}
+
+/// What lines are drawn with.
+struct Pen<'a> {
+    colour: &'a str,
+    /// In pixels of a picture of 600.
+    width: f64,
+    is_dashed: bool,
+}
+
+fn write_lines(lines: &str, pen: &Pen<'_>, view: Sheet<'_>, out: &mut impl Write) -> io::Result<()> {
+    if lines.is_empty() {
+        return Ok(());
+    }
+    let Pen { colour, is_dashed, .. } = pen;
+    let width = pen.width * view.unit();
+    let dash = if *is_dashed { format!(r#" stroke-dasharray="{:.2}""#, 4.0 * width) } else { String::new() };
+    writeln!(
+        out,
+        r#"<path fill="none" stroke="{colour}" stroke-width="{width:.2}"{dash} stroke-linecap="round" d="{lines}"/>"#
+    )
+}
+
 fn write_marks(marks: &[Mark], kind: MarkKind, view: Sheet<'_>, out: &mut impl Write) -> io::Result<()> {
-    let pixels = f64::from(view.size[0].min(view.size[1])) / 600.0;
+    let bold = boldness(marks, kind);
     let (colour, width, radius) = match kind {
-        MarkKind::Nodes => ("#888", 0.0, 1.2),
-        MarkKind::Edges => ("#ccc", 0.6, 0.0),
+        MarkKind::Nodes => ("#888", 0.0, 1.2 * bold),
+        MarkKind::Edges | MarkKind::Costs => ("#bbb", 0.6 * bold, 0.0),
+        MarkKind::Sectors => ("#c22", 1.2, 0.0),
         MarkKind::Endpoints => ("#c22", 1.5, 4.0),
         MarkKind::Shapes => ("#38c", 1.2, 0.0),
         MarkKind::Contours => ("#c84", 0.8, 0.0),
     };
-    let mut lines = String::new();
-    let mut dots = Vec::new();
-    for mark in marks.iter().filter(|mark| mark.kind == kind) {
-        let points: Vec<DVec2> = mark.line.iter().filter_map(|&p| view.disc(p, 0.0)).map(|d| d.centre).collect();
-        match points[..] {
-            [] => {}
-            [p] => dots.push(p),
-            _ => {
-                for (i, p) in points.iter().enumerate() {
-                    let command = if i == 0 { 'M' } else { 'L' };
-                    lines.push_str(&format!("{command}{:.2} {:.2}", p.x, p.y));
-                }
-            }
-        }
-    }
-    if !lines.is_empty() {
-        let width = width * pixels;
-        writeln!(
-            out,
-            r#"<path fill="none" stroke="{colour}" stroke-width="{width:.2}" stroke-linecap="round" d="{lines}"/>"#
-        )?;
-    }
+    let (dots, lines): (Vec<&Mark>, Vec<&Mark>) =
+        marks.iter().filter(|mark| mark.kind == kind).partition(|mark| mark.line.len() == 1);
+    let lines: String = lines.iter().map(|mark| polyline(&mark.line, view)).collect();
+    write_lines(&lines, &Pen { colour, width, is_dashed: kind == MarkKind::Sectors }, view, out)?;
     if !dots.is_empty() {
         let (fill, stroke) = if kind == MarkKind::Endpoints { ("#fff", colour) } else { (colour, "none") };
-        writeln!(out, r#"<g fill="{fill}" stroke="{stroke}" stroke-width="{:.2}">"#, width * pixels)?;
-        for p in dots {
-            writeln!(out, r#"<circle cx="{:.2}" cy="{:.2}" r="{:.2}"/>"#, p.x, p.y, radius * pixels)?;
+        writeln!(out, r#"<g fill="{fill}" stroke="{stroke}" stroke-width="{:.2}">"#, width * view.unit())?;
+        for Disc { centre: p, .. } in dots.iter().filter_map(|mark| view.disc(mark.line[0], 0.0)) {
+            writeln!(out, r#"<circle cx="{:.2}" cy="{:.2}" r="{:.2}"/>"#, p.x, p.y, radius * view.unit())?;
         }
         writeln!(out, "</g>")?;
     }

@@ -13,12 +13,27 @@ pub enum MarkKind {
     Nodes,
     /// A line an edge.
     Edges,
+    /// A line an edge, the wider and darker the less it costs.
+    Costs,
+    /// Dashed: where the sectors of a Yao graph in the plane meet, around the first generator.
+    Sectors,
     /// A ring an endpoint, a disc a generator.
     Endpoints,
     /// Outlines of the space, of what it forbids, and of where endpoints are placed.
     Shapes,
     /// Lines of equal path cost; in space, on the upright plane through the first generator.
     Contours,
+}
+
+impl MarkKind {
+    /// Is it of the graph alone, whatever is planned in it?
+    #[must_use]
+    pub fn is_of_graph(self) -> bool {
+        match self {
+            Self::Nodes | Self::Edges | Self::Costs => true,
+            Self::Sectors | Self::Endpoints | Self::Shapes | Self::Contours => false,
+        }
+    }
 }
 
 /// One mark: a polyline, or a dot where it has a single point.
@@ -28,4 +43,6 @@ pub struct Mark {
     pub kind: MarkKind,
     /// Its points, in scene units.
     pub line: Vec<DVec3>,
+    /// Of costs: the share of edges that cost less than this one, from 0 to 1; 0 for all else.
+    pub cost: f64,
 }

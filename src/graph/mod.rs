@@ -28,7 +28,7 @@ pub use lattice::Lattice;
 pub use mask::Mask;
 pub use poisson::{Region, poisson_points};
 pub use scatter::{EdgeWeights, Joining, Scatter, ScatterPlan};
-pub use scatter_size::{ScatterError, scatter_bytes, scatter_estimate};
+pub use scatter_size::{ScatterError, scatter_bytes, scatter_estimate, spacing_of_kept};
 pub use sectors::{Sectors, SectorsError};
 pub use triangular::TriangularSpec;
 pub use weights::{WeightError, WeightRange, WeightTable};

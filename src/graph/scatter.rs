@@ -5,7 +5,7 @@ use std::ops::Range;
 use rand::RngExt;
 
 use super::poisson::{CellGrid, poisson};
-use super::scatter_size::MOST_NODES;
+use super::scatter_size::{MOST_NODES, spacing_of_kept};
 use super::triangular::{REACH, triangular};
 use super::yao::NodeGrid;
 use super::{CostField, FieldValue, Node, Region, ScatterError, Sectors, WeightTable, scatter_estimate};
@@ -43,13 +43,6 @@ pub struct ScatterPlan<'a> {
     pub owner: Option<&'a (dyn Fn(DVec3) -> u8 + Sync)>,
 }
 
-impl ScatterPlan<'_> {
-    /// How far apart nodes would be if those that are kept lay evenly.
-    fn apart(&self) -> f64 {
-        self.spacing / if self.is_plane { libm::sqrt(self.keep) } else { libm::cbrt(self.keep) }
-    }
-}
-
 /// A scattered graph, as adjacency lists of directed edges. Weights are separate ([`Scatter::weigh`]), so that many sets of
 /// weights can share the nodes.
 #[derive(Clone, Debug, Default)]
@@ -61,6 +54,8 @@ pub struct Scatter {
     /// The other end of each edge.
     ends: Vec<Node>,
     spacing: f64,
+    /// How far apart they are on average.
+    apart: f64,
 }
 
 /// The weight of each edge of a scattered graph, in the order of [`Scatter::edges`].
@@ -136,11 +131,12 @@ impl Scatter {
         if positions.is_empty() {
             return Err(ScatterError::Empty);
         }
+        let apart = spacing_of_kept(plan.spacing, plan.keep, plan.is_plane);
         let owners: Vec<u8> = plan.owner.map_or_else(Vec::new, |owner| positions.iter().map(|&p| owner(p)).collect());
         let owned = (!owners.is_empty()).then_some(&owners[..]);
         let (starts, ends) = match plan.joining {
             Joining::Yao(sectors) => {
-                let near = NodeGrid::new(&positions, owned, plan.apart() * CELL).yao(sectors);
+                let near = NodeGrid::new(&positions, owned, apart * CELL).yao(sectors);
                 both_ways(positions.len(), |i| {
                     near[i * sectors.count()..(i + 1) * sectors.count()].iter().copied().filter(|&j| j != u32::MAX)
                 })
@@ -148,7 +144,7 @@ impl Scatter {
             Joining::Radius(reach) => within(&positions, owned, *reach),
             Joining::Triangular => within(&positions, owned, plan.spacing * REACH),
         };
-        Ok(Self { positions, owners, starts, ends, spacing: plan.spacing })
+        Ok(Self { positions, owners, starts, ends, spacing: plan.spacing, apart })
     }
 
     /// Weights of its edges: `R^alpha` by `table` times the length in spacings, R from `stream`, with `fields` evaluated at
@@ -189,6 +185,15 @@ impl Scatter {
     #[must_use]
     pub fn len(&self) -> usize {
         self.positions.len()
+    }
+
+    /// Bytes in memory.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.positions[..])
+            + size_of_val(&self.owners[..])
+            + size_of_val(&self.starts[..])
+            + size_of_val(&self.ends[..])
     }
 
     /// Has it no nodes?
@@ -236,7 +241,7 @@ impl Scatter {
     /// The node nearest to each of `points`; of equally near ones the first.
     #[must_use]
     pub fn nearest(&self, points: &[DVec3]) -> Vec<Node> {
-        let near = NodeGrid::new(&self.positions, None, self.spacing * CELL);
+        let near = NodeGrid::new(&self.positions, None, self.apart * CELL);
         points.iter().filter_map(|&p| near.nearest_to(p).map(Node)).collect()
     }
 }

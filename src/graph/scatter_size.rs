@@ -38,6 +38,12 @@ pub fn scatter_estimate(bounds: [DVec3; 2], spacing: f64, is_plane: bool) -> f64
     if is_plane { extent.x * extent.y * DENSITY[1] } else { extent.x * extent.y * extent.z * DENSITY[0] }
 }
 
+/// The spacing of nodes that lie as densely as the kept share of those with this spacing.
+#[must_use]
+pub fn spacing_of_kept(spacing: f64, keep: f64, is_plane: bool) -> f64 {
+    spacing / if is_plane { libm::sqrt(keep) } else { libm::cbrt(keep) }
+}
+
 /// Peak memory, in bytes, of the construction of a graph in a box with room for so many nodes, a share of which is open.
 #[must_use]
 pub fn scatter_bytes(nodes: f64, open: f64) -> u64 {

@@ -65,6 +65,15 @@ impl Sectors {
         }
     }
 
+    /// The rays between the sectors of a plane, each of length 1; none in space.
+    #[must_use]
+    pub fn rays(&self) -> &[DVec2] {
+        match self {
+            Self::Rays(rays) => rays,
+            Self::Faces | Self::Orthants | Self::Both => &[],
+        }
+    }
+
     /// The sector that contains the vector `d`, which must not be 0. A border belongs to one of its sectors.
     #[inline]
     #[must_use]

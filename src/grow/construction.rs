@@ -1,11 +1,10 @@
-//! What the papers' construction figures draw: nodes, edges, endpoints, shapes and contours of cost.
+//! What the papers' construction figures draw: nodes, edges and their costs, sectors, endpoints, shapes and contours of cost.
 
 use super::error::Problem;
-use super::site::PathTree;
 use super::space::Space;
 use super::step::{Generators, Step};
 use crate::geom::{Mark, MarkKind, Shape};
-use crate::graph::{Graph, Lattice, Node, Scatter};
+use crate::graph::{EdgeWeights, Graph, Lattice, Node, Scatter};
 use crate::math::DVec3;
 use crate::plan::Plan;
 use crate::raster::contours;
@@ -25,7 +24,7 @@ pub(super) fn drawn_shapes<'a>(step: &'a Step, volumes: &'a [Shape]) -> Vec<&'a 
 }
 
 /// The point that sections of `step` go through.
-fn middle(step: &Step) -> DVec3 {
+pub(super) fn middle(step: &Step) -> DVec3 {
     match &step.source {
         Generators::At(points) => points[0],
         Generators::Inside(shape) => shape.bounds().centre(),
@@ -35,85 +34,124 @@ fn middle(step: &Step) -> DVec3 {
     }
 }
 
-/// The marks of a step on a lattice, of the kinds in `show`.
+/// A graph as drawings show it.
+pub(super) trait DrawnGraph {
+    /// The number of its nodes and of its edges.
+    fn counts(&self) -> [u64; 2];
+
+    /// Calls `add` with the position of each node.
+    fn each_node(&self, add: &mut dyn FnMut(DVec3));
+
+    /// Calls `add` with the ends and the weight of each edge.
+    fn each_edge(&self, add: &mut dyn FnMut([DVec3; 2], u32));
+}
+
+impl DrawnGraph for Lattice {
+    fn counts(&self) -> [u64; 2] {
+        [self.open_nodes(), self.count_edges()]
+    }
+
+    fn each_node(&self, add: &mut dyn FnMut(DVec3)) {
+        self.nodes().for_each(|node| add(self.position(node)));
+    }
+
+    fn each_edge(&self, add: &mut dyn FnMut([DVec3; 2], u32)) {
+        for node in self.nodes() {
+            self.edges(node, |edge| {
+                if node < edge.node {
+                    add([node, edge.node].map(|n| self.position(n)), edge.weight);
+                }
+            });
+        }
+    }
+}
+
+impl DrawnGraph for (&Scatter, &EdgeWeights) {
+    fn counts(&self) -> [u64; 2] {
+        [self.0.len() as u64, self.0.count_edges()]
+    }
+
+    fn each_node(&self, add: &mut dyn FnMut(DVec3)) {
+        self.0.positions().iter().for_each(|&p| add(p));
+    }
+
+    fn each_edge(&self, add: &mut dyn FnMut([DVec3; 2], u32)) {
+        let (graph, weights) = self;
+        for node in (0..graph.len() as u32).map(Node) {
+            let edges = graph.edges(node);
+            let ends = graph.ends(edges.clone()).iter().zip(weights.of(edges));
+            let ends = ends.filter(|(end, _)| node < **end);
+            ends.for_each(|(&end, &weight)| add([node, end].map(|n| graph.position(n)), weight));
+        }
+    }
+}
+
+/// What construction drawings show of a step.
+pub(super) struct Construction<'a> {
+    /// The graph that paths were planned in.
+    pub graph: &'a dyn DrawnGraph,
+    /// The shapes that its nodes and endpoints were placed in.
+    pub shapes: Vec<&'a Shape>,
+    /// The endpoints.
+    pub ends: Vec<DVec3>,
+    /// Does it lie in the plane?
+    pub is_plane: bool,
+    /// Lines of equal cost; `None` where the graph has no rows.
+    pub contours: &'a dyn Fn() -> Option<Vec<Vec<DVec3>>>,
+    /// The rays between the sectors of a Yao graph, as polylines; none where it has none in the plane.
+    pub sectors: Vec<Vec<DVec3>>,
+}
+
+impl Construction<'_> {
+    /// The marks of the kinds in `show`.
+    ///
+    /// # Errors
+    /// [`Problem::TooManyMarks`], [`Problem::NoContours`], [`Problem::NoSectors`].
+    pub(super) fn marks(&self, show: &[MarkKind]) -> Result<Vec<Mark>, Problem> {
+        let mut marks = graph_marks(self.graph, show)?;
+        for &kind in show {
+            let lines = match kind {
+                MarkKind::Nodes | MarkKind::Edges | MarkKind::Costs => continue,
+                MarkKind::Endpoints => self.ends.iter().map(|&p| vec![p]).collect(),
+                MarkKind::Shapes => self.shapes.iter().flat_map(|shape| sections(shape, self.is_plane)).collect(),
+                MarkKind::Contours => (self.contours)().ok_or(Problem::NoContours)?,
+                MarkKind::Sectors if self.sectors.is_empty() => return Err(Problem::NoSectors),
+                MarkKind::Sectors => self.sectors.clone(),
+            };
+            marks.extend(lines.into_iter().map(|line| Mark { kind, line, cost: 0.0 }));
+        }
+        Ok(marks)
+    }
+}
+
+/// The marks of a graph alone: of `show` the nodes, the edges and what these cost.
 ///
 /// # Errors
 /// [`Problem::TooManyMarks`].
-pub(super) fn lattice_marks(
-    step: &Step,
-    lattice: &Lattice,
-    tree: &dyn PathTree,
-    endpoints: &[Node],
-    show: &[MarkKind],
-) -> Result<Vec<Mark>, Problem> {
+pub(super) fn graph_marks(graph: &dyn DrawnGraph, show: &[MarkKind]) -> Result<Vec<Mark>, Problem> {
     let mut marks = Vec::new();
+    let [nodes, edges] = graph.counts();
     for &kind in show {
-        let mut add = |line: Vec<DVec3>| marks.push(Mark { kind, line });
-        match kind {
-            MarkKind::Nodes | MarkKind::Edges => {
-                let is_edges = kind == MarkKind::Edges;
-                let count = if is_edges { lattice.count_edges() } else { lattice.open_nodes() };
-                few_enough(count, is_edges)?;
-                for node in lattice.nodes() {
-                    let from = lattice.position(node);
-                    if !is_edges {
-                        add(vec![from]);
-                        continue;
-                    }
-                    // Each edge once: from the end with the lower name.
-                    lattice.edges(node, |edge| {
-                        if node < edge.node {
-                            add(vec![from, lattice.position(edge.node)]);
-                        }
-                    });
-                }
-            }
-            MarkKind::Endpoints => endpoints.iter().for_each(|&node| add(vec![lattice.position(node)])),
-            MarkKind::Shapes => {
-                let shapes = drawn_shapes(step, &[]);
-                shapes.iter().flat_map(|shape| sections(shape, lattice.is_plane())).for_each(add);
-            }
-            MarkKind::Contours => {
-                let lines = tree.contours(middle(step)).ok_or(Problem::NoContours)?;
-                lines.into_iter().for_each(add);
-            }
-        }
-    }
-    Ok(marks)
-}
-
-/// The marks of a scattered graph; `shapes` are those that its nodes and endpoints were placed in.
-///
-/// # Errors
-/// [`Problem::TooManyMarks`], [`Problem::NoContours`].
-pub(super) fn scattered_marks(
-    graph: &Scatter,
-    shapes: &[&Shape],
-    endpoints: &[Node],
-    show: &[MarkKind],
-) -> Result<Vec<Mark>, Problem> {
-    let mut marks = Vec::new();
-    let nodes = || (0..graph.len() as u32).map(Node);
-    for &kind in show {
-        let mut add = |line: Vec<DVec3>| marks.push(Mark { kind, line });
         match kind {
             MarkKind::Nodes => {
-                few_enough(graph.len() as u64, false)?;
-                graph.positions().iter().for_each(|&p| add(vec![p]));
+                few_enough(nodes, false)?;
+                graph.each_node(&mut |p| marks.push(Mark { kind, line: vec![p], cost: 0.0 }));
             }
             MarkKind::Edges => {
-                few_enough(graph.count_edges(), true)?;
-                for node in nodes() {
-                    let ends = graph.ends(graph.edges(node)).iter().filter(|end| node < **end);
-                    ends.for_each(|&end| add(vec![graph.position(node), graph.position(end)]));
-                }
+                few_enough(edges, true)?;
+                graph.each_edge(&mut |ends, _| marks.push(Mark { kind, line: ends.to_vec(), cost: 0.0 }));
             }
-            MarkKind::Endpoints => endpoints.iter().for_each(|&node| add(vec![graph.position(node)])),
-            MarkKind::Shapes => {
-                let is_plane = graph.positions().iter().all(|p| p.z == 0.0);
-                shapes.iter().flat_map(|shape| sections(shape, is_plane)).for_each(add);
+            MarkKind::Costs => {
+                few_enough(edges, true)?;
+                let mut sorted = Vec::with_capacity(edges as usize);
+                graph.each_edge(&mut |_, weight| sorted.push(weight));
+                sorted.sort_unstable();
+                graph.each_edge(&mut |ends, weight| {
+                    let less = sorted.partition_point(|&other| other < weight);
+                    marks.push(Mark { kind, line: ends.to_vec(), cost: less as f64 / sorted.len() as f64 });
+                });
             }
-            MarkKind::Contours => return Err(Problem::NoContours),
+            MarkKind::Sectors | MarkKind::Endpoints | MarkKind::Shapes | MarkKind::Contours => {}
         }
     }
     Ok(marks)

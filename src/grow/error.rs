@@ -132,6 +132,9 @@ pub enum Problem {
     /// Contours where there is no lattice.
     #[error("contours of cost are drawn on lattices only")]
     NoContours,
+    /// Sectors where there is no Yao graph in the plane.
+    #[error("sectors are drawn of Yao graphs in the plane only: `nodes.scatter` with `plane = true`, without `radius`")]
+    NoSectors,
     /// A class without a number.
     #[error("{0}")]
     Width(String),

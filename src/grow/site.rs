@@ -64,7 +64,7 @@ pub(super) trait PathSite: Site {
     /// Marks of what was planned, as construction drawings show it.
     ///
     /// # Errors
-    /// [`Problem::TooManyMarks`], [`Problem::NoContours`].
+    /// [`Problem::TooManyMarks`], [`Problem::NoContours`], [`Problem::NoSectors`].
     fn marks(
         &self,
         step: &Step,

@@ -52,7 +52,7 @@ pub struct Scene {
     /// In a flat scene: the picture as a place to draw on, over a photograph or over black.
     #[serde(default)]
     pub view: Option<ViewSpec>,
-    /// Draw it as a schematic, with these marks of its construction.
+    /// It is drawn as a schematic, with these marks of its construction: `render` traces it only where `--look` says how.
     #[serde(default)]
     pub show: Vec<MarkKind>,
     /// Shapes, by name.

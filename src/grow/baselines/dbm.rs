@@ -13,7 +13,7 @@ use crate::grow::grown::Grown;
 use crate::grow::lookup::Lookup;
 use crate::grow::paths::refined;
 use crate::grow::site::Site;
-use crate::grow::spaces::OnLattice;
+use crate::grow::spaces::{OnLattice, drawn_growth};
 use crate::grow::spec::StepSpec;
 use crate::grow::starts::starts;
 use crate::grow::step::{Context, Method, Step, Unreached};
@@ -48,9 +48,10 @@ impl Method for DbmSpec {
         if !has_end && self.solver == Solver::Grid && step.unreached == Unreached::Error {
             return Err(step.error(Key::Method, Problem::NoTouch(self.nodes)));
         }
-        let skeleton = refined(step, skeleton, space, context)?;
+        let mut marks = drawn_growth(step, &site, &skeleton, context)?;
+        let skeleton = refined(step, skeleton, &mut marks, space, context)?;
         let [nodes, edges] = site.size();
-        step.finish_with(Grown { nodes, edges, settled, ..Grown::default() }, skeleton, context)
+        step.finish_with(Grown { nodes, edges, settled, marks, ..Grown::default() }, skeleton, context)
     }
 
     fn check_places(&self, step: &Step, context: &Context<'_>) -> Result<(), GrowError> {

@@ -16,7 +16,7 @@ use crate::grow::grown::Grown;
 use crate::grow::lookup::Lookup;
 use crate::grow::rules::{MOST_DENSE, Needs, Rules};
 use crate::grow::site::Site;
-use crate::grow::spaces::OnLattice;
+use crate::grow::spaces::{OnLattice, drawn_growth};
 use crate::grow::spec::StepSpec;
 use crate::grow::starts::{Placed, starts};
 use crate::grow::step::{Context, Generators, Method, Step};
@@ -103,9 +103,10 @@ impl Method for FractalSpec {
         let starts = starts(step, &mut site, context)?;
         let mut growth = FractalGrowth::new(self, step, &site.lattice, &starts)?;
         let settled = growth.iterate(&starts, context)?;
-        let skeleton = refined(step, growth.skeleton, space, context)?;
+        let mut marks = drawn_growth(step, &site, &growth.skeleton, context)?;
+        let skeleton = refined(step, growth.skeleton, &mut marks, space, context)?;
         let [nodes, edges] = site.size();
-        step.finish_with(Grown { nodes, edges, settled, ..Grown::default() }, skeleton, context)
+        step.finish_with(Grown { nodes, edges, settled, marks, ..Grown::default() }, skeleton, context)
     }
 
     fn check_places(&self, step: &Step, context: &Context<'_>) -> Result<(), GrowError> {

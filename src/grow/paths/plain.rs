@@ -40,8 +40,8 @@ impl Method for Paths {
         match &step.space {
             Some(Space::Lattice(space)) => {
                 let mut site = on_lattice(step, space, context)?;
-                let (grown, skeleton) = grow(step, site.as_mut(), context)?;
-                let skeleton = refined(step, skeleton, space, context)?;
+                let (mut grown, skeleton) = grow(step, site.as_mut(), context)?;
+                let skeleton = refined(step, skeleton, &mut grown.marks, space, context)?;
                 step.finish_with(grown, skeleton, context)
             }
             Some(Space::Scatter(space)) => {

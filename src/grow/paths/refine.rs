@@ -5,7 +5,9 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 
 use super::refine_spec::Refine;
+use crate::geom::{Mark, MarkKind};
 use crate::graph::{Graph, Mask, Node, Window};
+use crate::grow::construction::graph_marks;
 use crate::grow::error::{GrowError, Key, Problem};
 use crate::grow::spaces::LatticeSpace;
 use crate::grow::step::{Context, Step};
@@ -15,19 +17,27 @@ use crate::skeleton::{Path, Skeleton};
 
 /// A path is refined in pieces of so many coarse nodes, so that the graphs are small and temporary.
 const PIECE: usize = 32;
-/// One piece of a path in the finer lattice: its nodes from the root's side, with the cost from its start.
-type Piece = Vec<([i32; 3], f64)>;
+/// Nodes of the finer lattice from the root's side, with the cost from the first.
+type Way = Vec<([i32; 3], f64)>;
 
-/// Refines every path of `skeleton`, which was planned in `space`, as often as `step` says. Roots, forks and ends stay
+/// One piece of a path in the finer lattice, and marks of that.
+struct Piece {
+    way: Way,
+    marks: Vec<Mark>,
+}
+
+/// Refines every path of `skeleton`, which was planned in `space`, as often as `step` says; of `marks` those of the graph become
+/// those of the finest. Roots, forks and ends stay
 /// where they are; between them each path is planned again.
 pub(in crate::grow) fn refined(
     step: &Step,
     skeleton: Skeleton,
+    marks: &mut Vec<Mark>,
     space: &LatticeSpace,
     context: &Context<'_>,
 ) -> Result<Skeleton, GrowError> {
     match &step.refine {
-        Some(refine) => rounds(step, refine, skeleton, space, context),
+        Some(refine) => rounds(step, refine, skeleton, marks, space, context),
         None => Ok(skeleton),
     }
 }
@@ -36,17 +46,25 @@ fn rounds(
     step: &Step,
     refine: &Refine,
     mut skeleton: Skeleton,
+    marks: &mut Vec<Mark>,
     space: &LatticeSpace,
     context: &Context<'_>,
 ) -> Result<Skeleton, GrowError> {
-    let Context { seed, progress, .. } = *context;
+    let Context { seed, progress, show, .. } = *context;
     let mut spacing = space.window.spacing;
     for round in 1..=refine.times {
         progress.report("refine", f64::from(round - 1) / f64::from(refine.times))?;
         let finer = spacing / f64::from(refine.ratio);
-        let work = Round { step, refine, space, seed, spacing: finer, round, progress };
+        let show = if round == refine.times { show } else { &[] };
+        let work = Round { step, refine, space, seed, spacing: finer, round, show, progress };
         // Costs stay comparable: each round has `ratio` times as many edges.
-        skeleton = work.apply(&skeleton, finer / space.window.spacing)?;
+        let (finer_skeleton, drawn) = work.apply(&skeleton, finer / space.window.spacing)?;
+        skeleton = finer_skeleton;
+        if round == refine.times {
+            // The graph that the paths lie in is the last one.
+            marks.retain(|mark| !mark.kind.is_of_graph());
+            marks.extend(drawn);
+        }
         spacing = finer;
     }
     Ok(skeleton)
@@ -59,11 +77,13 @@ struct Round<'a> {
     seed: u64,
     spacing: f64,
     round: u32,
+    show: &'a [MarkKind],
     progress: &'a Progress,
 }
 
 impl Round<'_> {
-    fn apply(&self, coarse: &Skeleton, scale: f64) -> Result<Skeleton, GrowError> {
+    /// The finer skeleton, and marks of the lattices that it lies in.
+    fn apply(&self, coarse: &Skeleton, scale: f64) -> Result<(Skeleton, Vec<Mark>), GrowError> {
         let chains = chains(coarse);
         let refined: Result<Vec<Vec<Piece>>, GrowError> = chains
             .par_iter()
@@ -83,6 +103,7 @@ impl Round<'_> {
         let mut fine = Skeleton::new(coarse.classes.clone());
         let mut known: HashMap<[i32; 3], u32> = HashMap::new();
         let mut renamed = vec![u32::MAX; coarse.nodes.len()];
+        let mut marks = Vec::new();
         for (i, node) in coarse.nodes.iter().enumerate().filter(|(_, node)| node.parent.is_none()) {
             renamed[i] = fine.nodes.len() as u32;
             known.entry(self.at(node.position)).or_insert(renamed[i]);
@@ -96,7 +117,8 @@ impl Round<'_> {
             let mut way: Vec<([i32; 3], DVec3, f64)> = Vec::new();
             for piece in pieces {
                 let base = cost;
-                for (at, along) in piece.into_iter().skip(1) {
+                marks.extend(piece.marks);
+                for (at, along) in piece.way.into_iter().skip(1) {
                     cost = base + along * scale;
                     way.push((at, DVec3::from_array(at.map(|c| f64::from(c) * self.spacing)), cost));
                 }
@@ -119,7 +141,7 @@ impl Round<'_> {
             .iter()
             .map(|path| Path { end: renamed[path.end as usize], root: renamed[path.root as usize], ..*path })
             .collect();
-        Ok(fine)
+        Ok((fine, marks))
     }
 
     fn wrong(&self, problem: Problem) -> GrowError {
@@ -174,15 +196,17 @@ impl Round<'_> {
             .space
             .lattice_in(window, &stream, self.seed, Some(mask))
             .map_err(|e| self.wrong(Problem::Lattice(e)))?;
+        let marks = graph_marks(&lattice, self.show).map_err(|problem| self.step.error(Key::Nodes, problem))?;
         let [from, to] = [first, last].map(|n| lattice.node(within(n)));
         let plan =
             plan(&lattice, &[from], Goal::Nodes(&[to]), self.progress).map_err(|error| self.step.plan_error(error))?;
         let range = lattice.weight_range();
         let Some(mut left) = plan.cost(to) else {
             // Obstacles cut the corridor at this scale: the coarse way stays, straight from node to node.
-            return Ok(nodes.into_iter().zip(points).map(|(n, (_, cost))| (n, *cost)).collect());
+            let way = nodes.into_iter().zip(points).map(|(n, (_, cost))| (n, *cost)).collect();
+            return Ok(Piece { way, marks });
         };
-        let mut way: Piece = plan
+        let mut way: Way = plan
             .path(to)
             .map(|node: Node| {
                 let here = (self.at(lattice.position(node)), range.real(left));
@@ -191,7 +215,7 @@ impl Round<'_> {
             })
             .collect();
         way.reverse();
-        Ok(way)
+        Ok(Piece { way, marks })
     }
 }
 

@@ -11,9 +11,9 @@ use super::light::Canopy;
 use super::repeat::{Repeat, Target};
 use super::spec::{Index, Orient};
 use crate::geom::{Mark, MarkKind};
-use crate::graph::{Node, Scatter, WeightTable};
+use crate::graph::{EdgeWeights, Node, Scatter, WeightTable};
 use crate::grow::choice::choose;
-use crate::grow::construction::scattered_marks;
+use crate::grow::construction::Construction;
 use crate::grow::endpoints::Placement;
 use crate::grow::error::{GrowError, Key, Problem};
 use crate::grow::grown::{Grown, Part};
@@ -225,12 +225,21 @@ impl<'a> Rounds<'a> {
             return Err(self.step.error(Key::To, Problem::EmptyRound { round: self.round + 1, count: counted }));
         }
         progress.report("grow", f64::from(self.round + 1) / f64::from(self.repeat.times))?;
+        self.ask_to_join(&sprouts, memory)?;
         let level = self.level + self.round as u16;
         for ((end, share), sprout) in ends.iter().zip(&shares).zip(sprouts) {
             self.join(end, share, sprout, level, &stream);
         }
         self.round += 1;
         Ok(())
+    }
+
+    /// Asks for what `sprouts` take beside the skeleton's nodes that they become, and beside the sets of nodes.
+    fn ask_to_join(&self, sprouts: &[Sprout], memory: &Memory) -> Result<(), GrowError> {
+        let joined = size_of::<SkeletonNode>() + size_of::<(DVec3, u32, f64)>();
+        let nodes = sprouts.iter().map(|sprout| sprout.nodes.len() * joined).sum::<usize>();
+        let sets = self.sets.iter().flatten().map(Scatter::bytes).sum::<usize>();
+        Ok(memory.ask((nodes + size_of_val(sprouts) + sets) as u64)?)
     }
 
     /// Makes the sets of nodes that `ends` take.
@@ -379,12 +388,34 @@ impl<'a> Rounds<'a> {
             sprout.ends.push((parent, class));
         }
         sprout.graph = [graph.len() as u64, graph.count_edges(), found.settled() as u64];
-        sprout.marks = scattered_marks(graph, &[&self.space.shape], &nodes, show)
-            .map_err(|problem| self.wrong_nodes(problem))?
-            .into_iter()
-            .map(|mark| Mark { line: mark.line.into_iter().map(|p| place.put(p)).collect(), ..mark })
-            .collect();
+        if !show.is_empty() {
+            sprout.marks = self.marks(graph, &weights, &nodes, &place, show)?;
+        }
         Ok(sprout)
+    }
+
+    /// Marks of the graph around an end.
+    fn marks(
+        &self,
+        graph: &Scatter,
+        weights: &EdgeWeights,
+        ends: &[Node],
+        place: &SubgraphPlace,
+        show: &[MarkKind],
+    ) -> Result<Vec<Mark>, GrowError> {
+        let construction = Construction {
+            graph: &(graph, weights),
+            shapes: vec![&self.space.shape],
+            ends: ends.iter().map(|&node| graph.position(node)).collect(),
+            is_plane: self.space.is_plane,
+            contours: &|| None,
+            sectors: Vec::new(),
+        };
+        let marks = construction.marks(show).map_err(|problem| self.wrong_nodes(problem))?;
+        let put = marks
+            .into_iter()
+            .map(|mark| Mark { line: mark.line.into_iter().map(|p| place.put(p)).collect(), ..mark });
+        Ok(put.collect())
     }
 
     /// Adds what an end sprouted to the skeleton.

@@ -8,7 +8,7 @@ mod scatter;
 mod voxels;
 
 pub use lattice::{LatticeSpace, LatticeSpec};
-pub(super) use on_lattice::{OnLattice, on_lattice};
+pub(super) use on_lattice::{OnLattice, drawn_growth, on_lattice};
 pub(super) use on_scatter::OnScatter;
 pub use resolve::resolve_space;
 pub use scatter::{Clusters, ClustersSpec, ScatterSpace, ScatterSpec};

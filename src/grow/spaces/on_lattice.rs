@@ -6,7 +6,7 @@ use rustc_hash::FxHashSet;
 use super::LatticeSpace;
 use crate::geom::{Mark, Shape};
 use crate::graph::{Graph, Lattice, LatticeError, Node};
-use crate::grow::construction::{cost_contours, lattice_marks};
+use crate::grow::construction::{Construction, cost_contours, drawn_shapes, middle};
 use crate::grow::crowd::Crowd;
 use crate::grow::endpoints::RandomPlaces;
 use crate::grow::error::{GrowError, Key, Problem};
@@ -15,11 +15,26 @@ use crate::grow::site::{PathSite, PathTree, Site};
 use crate::grow::step::{Context, Step};
 use crate::math::{DVec3, Progress, Stream};
 use crate::plan::{Goal, Plan, PlanError, mean_cost, plan, plan_delayed};
+use crate::skeleton::Skeleton;
 
 /// A lattice in its space.
 pub(in crate::grow) struct OnLattice<'a> {
     pub lattice: Lattice,
     pub space: &'a LatticeSpace,
+}
+
+/// Marks of a step whose `skeleton` grew on the lattice by more than one plan: contours are of those steps that have one.
+///
+/// # Errors
+/// [`GrowError::Step`] where there are too many, or none of a kind.
+pub(in crate::grow) fn drawn_growth(
+    step: &Step,
+    site: &OnLattice<'_>,
+    skeleton: &Skeleton,
+    context: &Context<'_>,
+) -> Result<Vec<Mark>, GrowError> {
+    let ends = skeleton.paths.iter().map(|path| skeleton.nodes[path.end as usize].position).collect();
+    site.drawn(step, ends, &|| Some(Vec::new()), context).map_err(|problem| step.error(Key::Nodes, problem))
 }
 
 /// The lattice of `space`.
@@ -73,6 +88,23 @@ impl<'a> OnLattice<'a> {
             nodes.push(node);
         }
         Ok(nodes)
+    }
+
+    /// Marks of a step that grew to `ends`, as construction drawings show it.
+    ///
+    /// # Errors
+    /// Those of [`Construction::marks`].
+    pub fn drawn(
+        &self,
+        step: &Step,
+        ends: Vec<DVec3>,
+        contours: &dyn Fn() -> Option<Vec<Vec<DVec3>>>,
+        context: &Context<'_>,
+    ) -> Result<Vec<Mark>, Problem> {
+        let shapes = drawn_shapes(step, &[]);
+        let is_plane = self.lattice.is_plane();
+        let graph = &self.lattice;
+        Construction { graph, shapes, ends, is_plane, contours, sectors: Vec::new() }.marks(context.show)
     }
 }
 
@@ -153,7 +185,8 @@ impl PathSite for OnLattice<'_> {
         ends: &[Node],
         context: &Context<'_>,
     ) -> Result<Vec<Mark>, Problem> {
-        lattice_marks(step, &self.lattice, tree, ends, context.show)
+        let ends = ends.iter().map(|&node| self.lattice.position(node)).collect();
+        self.drawn(step, ends, &|| tree.contours(middle(step)), context)
     }
 }
 

@@ -2,9 +2,9 @@
 
 use super::{ScatterSpace, Scattered};
 use crate::geom::{Mark, Shape};
-use crate::graph::{EdgeWeights, Node, Scatter};
+use crate::graph::{EdgeWeights, Joining, Node, Scatter};
 use crate::grow::choice::choose;
-use crate::grow::construction::{drawn_shapes, scattered_marks};
+use crate::grow::construction::{Construction, drawn_shapes, middle};
 use crate::grow::endpoints::{Placement, RandomPlaces};
 use crate::grow::error::{GrowError, Key, Problem};
 use crate::grow::near::Near;
@@ -13,6 +13,9 @@ use crate::grow::starts::source_places;
 use crate::grow::step::{Context, Generators, Step};
 use crate::math::{DVec3, Progress, Stream};
 use crate::plan::{PlanError, Routes, routes};
+
+/// How long the rays between sectors are drawn, in spacings: beyond nearly every neighbour.
+const SECTOR_RAY: f64 = 2.0;
 
 /// Scattered nodes in their space.
 pub(in crate::grow) struct OnScatter<'a> {
@@ -147,8 +150,24 @@ impl PathSite for OnScatter<'_> {
         ends: &[Node],
         context: &Context<'_>,
     ) -> Result<Vec<Mark>, Problem> {
-        let shapes = drawn_shapes(step, &self.scattered.volumes);
-        scattered_marks(self.graph(), &shapes, ends, context.show)
+        let graph = self.graph();
+        let sectors = match (&self.space.joining, &graph.nearest(&[middle(step)])[..]) {
+            (Joining::Yao(sectors), &[node]) => {
+                let at = graph.position(node);
+                let reach = SECTOR_RAY * self.space.spacing;
+                sectors.rays().iter().map(|ray| vec![at, at + ray.extend(0.0) * reach]).collect()
+            }
+            _ => Vec::new(),
+        };
+        let construction = Construction {
+            graph: &(graph, &self.scattered.weights),
+            shapes: drawn_shapes(step, &self.scattered.volumes),
+            ends: ends.iter().map(|&node| graph.position(node)).collect(),
+            is_plane: self.space.is_plane,
+            contours: &|| None,
+            sectors,
+        };
+        construction.marks(context.show)
     }
 }
 

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use crate::geom::{Bounds, Shape, ShapeSpec, Solid};
 use crate::graph::{
     CostField, EdgeWeights, Joining, Region, Scatter, ScatterError, ScatterPlan, WeightError, WeightTable,
-    poisson_points, scatter_bytes, scatter_estimate,
+    poisson_points, scatter_bytes, scatter_estimate, spacing_of_kept,
 };
 use crate::math::{DMat3, DVec3, Point, Stream, Weights};
 
@@ -182,7 +182,7 @@ impl ScatterSpace {
     #[must_use]
     pub fn edges_estimate(&self) -> f64 {
         let nodes = self.estimate() * self.keep;
-        let apart = self.spacing / if self.is_plane { libm::sqrt(self.keep) } else { libm::cbrt(self.keep) };
+        let apart = spacing_of_kept(self.spacing, self.keep, self.is_plane);
         nodes * self.joining.degree(nodes, apart, self.is_plane)
     }
 
