@@ -31,7 +31,7 @@ pub fn grow(
         scene.grow_round()?;
     }
     let mut grown: Vec<Grown> = scene.grown.into_iter().flatten().collect();
-    shape_plants(&recipe.steps, &mut grown);
+    shape_plants(&recipe.steps, &mut grown, memory)?;
     Ok(grown)
 }
 

@@ -4,12 +4,16 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
+use super::memory::bytes_of;
 use crate::grow::{Grown, Step};
-use crate::math::DVec3;
-use crate::skeleton::{Plant, PlantPart, Skeleton};
+use crate::math::{DVec3, Memory, OutOfMemory};
+use crate::skeleton::{Plant, PlantPart};
 
-/// Gives plants, which several steps grew together, their widths and their form.
-pub(super) fn shape_plants(steps: &[Step], grown: &mut [Grown]) {
+/// Gives plants, which several steps grew together, their widths and their form, within `memory`.
+///
+/// # Errors
+/// [`OutOfMemory`].
+pub(super) fn shape_plants(steps: &[Step], grown: &mut [Grown], memory: &Memory) -> Result<(), OutOfMemory> {
     // The step where each step's plant starts.
     let base = |mut i: usize| loop {
         match steps[i].width.starts_plant() {
@@ -40,7 +44,10 @@ pub(super) fn shape_plants(steps: &[Step], grown: &mut [Grown]) {
             members.iter().map(move |&i| (i, foot))
         })
         .collect();
-    let shaped: Vec<(Vec<usize>, Vec<Skeleton>)> = plants
+    let nodes = plants.values().flatten().map(|&i| grown[i].skeleton.nodes.len() as u64).sum::<u64>();
+    let memory = memory.beside(bytes_of(&*grown));
+    memory.ask(nodes * Plant::NODE_BYTES)?;
+    let shaped: Vec<(Vec<usize>, Plant)> = plants
         .into_par_iter()
         .map(|(base, members)| {
             let parts: Vec<PlantPart<'_>> = members
@@ -56,15 +63,18 @@ pub(super) fn shape_plants(steps: &[Step], grown: &mut [Grown]) {
             if let Some(form) = &steps[base].form {
                 plant.shape(form, &steps[base].width);
             }
-            (members, plant.split())
+            (members, plant)
         })
         .collect();
-    for (members, skeletons) in shaped {
-        for (i, mut skeleton) in members.into_iter().zip(skeletons) {
+    // Their form has given them other nodes.
+    memory.ask(shaped.iter().map(|(_, plant)| plant.bytes_to_split() as u64).sum())?;
+    for (members, plant) in shaped {
+        for (i, mut skeleton) in members.into_iter().zip(plant.split()) {
             skeleton.classes.clone_from(&steps[i].classes);
             skeleton.number_branches();
             grown[i].skeleton = skeleton;
         }
     }
     feet.into_iter().for_each(|(i, foot)| grown[i].foot = foot);
+    Ok(())
 }

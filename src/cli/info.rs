@@ -10,10 +10,12 @@ use super::console::Console;
 use super::error::Failure;
 use super::jobs::Jobs;
 use super::memory;
+use crate::assemble::Recipe;
 use crate::export::{Pov, Templates};
 use crate::grow::Grown;
+use crate::math::DVec3;
 use crate::scene;
-use crate::skeleton::{Orders, Skeleton, measure_from};
+use crate::skeleton::{Measurement, Orders, Plant, PlantPart, Skeleton, measure_from};
 
 /// A writer that counts.
 #[derive(Default)]
@@ -51,6 +53,7 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
         lap("claims");
         let model = scene::model(&scene, &grown, scene.recipe.size, &jobs.memory, &progress)?;
         lap("model");
+        let plants = whole_plants(&scene.recipe, &grown);
         let mut count = Count::default();
         Pov::new(&model, &Templates::default(), "scene", scene.recipe.size, &job.origin(scene.recipe.seed, "info"))
             .write_inc(&mut count)
@@ -69,6 +72,7 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
             "memory": memory::told(&jobs.memory),
             "seconds": seconds.iter().map(|(stage, s)| ((*stage).to_owned(), json!(s))).collect::<serde_json::Map<_, _>>(),
             "steps": grown.iter().map(step).collect::<Vec<_>>(),
+            "plants": plants.iter().map(|(name, plant)| measures(name, plant, None)).collect::<Vec<_>>(),
             "claims": claims,
         });
         if console.json {
@@ -77,6 +81,7 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
         }
         console.line(&format!("{}: {} (seed {})", job.name(), scene.recipe.title, scene.recipe.seed));
         grown.iter().for_each(|step| print_step(step, console));
+        plants.iter().for_each(|(name, plant)| print_plant(name, plant, console));
         console.line(&format!(
             "  {} primitives, {:.1} MB as POV-Ray, {:.1} MB of memory at most",
             model.primitives(),
@@ -91,15 +96,32 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
 
 /// The numbers of a step.
 fn step(step: &Grown) -> serde_json::Value {
-    json!({
-        "step": step.name,
-        "nodes": step.nodes,
-        "edges": step.edges,
-        "settled": step.settled,
-        "dropped": step.dropped,
-        "skeleton": measure_from(&step.skeleton, step.foot),
-        "streams": streams(&step.skeleton),
-    })
+    let mut all = measures(&step.name, &step.skeleton, step.foot);
+    all["nodes"] = json!(step.nodes);
+    all["edges"] = json!(step.edges);
+    all["settled"] = json!(step.settled);
+    all["dropped"] = json!(step.dropped);
+    all
+}
+
+/// What is measured of a skeleton.
+fn measures(name: &str, skeleton: &Skeleton, foot: Option<DVec3>) -> serde_json::Value {
+    json!({ "step": name, "skeleton": measure_from(skeleton, foot), "streams": streams(skeleton) })
+}
+
+/// The plants of objects that several steps grew, each as one skeleton with the object's name.
+fn whole_plants(recipe: &Recipe, grown: &[Grown]) -> Vec<(String, Skeleton)> {
+    let several = recipe.objects.iter().filter(|object| object.steps.len() > 1);
+    let whole = several.map(|object| {
+        let part = |&i: &usize| PlantPart {
+            skeleton: &grown[i].skeleton,
+            width: &recipe.steps[i].width,
+            first_level: grown[i].first_level,
+        };
+        let parts: Vec<PlantPart<'_>> = object.steps.iter().map(part).collect();
+        (object.name.clone(), Plant::new(&parts).whole())
+    });
+    whole.filter(|(_, plant)| !plant.nodes.is_empty()).collect()
 }
 
 fn print_step(step: &Grown, console: &Console) {
@@ -108,9 +130,22 @@ fn print_step(step: &Grown, console: &Console) {
         "  {}: {} nodes, {} edges, {} settled; {} endpoints, {} dropped; {} skeleton nodes, tortuosity {:.3}, spread {:.3}",
         step.name, step.nodes, step.edges, step.settled, m.endpoints, step.dropped, m.nodes, m.tortuosity, m.spread
     ));
+    print_orders(&m, console);
+}
+
+fn print_plant(name: &str, plant: &Skeleton, console: &Console) {
+    let m = measure_from(plant, None);
     console.line(&format!(
-        "    {} orders of Strahler, bifurcation ratio {:.2}, twigs {:.3} long, dimension {:.2}",
-        m.strahler, m.bifurcation, m.twig, m.dimension
+        "  object {name}, all its steps: {} endpoints, {} skeleton nodes, tortuosity {:.3}, spread {:.3}",
+        m.endpoints, m.nodes, m.tortuosity, m.spread
+    ));
+    print_orders(&m, console);
+}
+
+fn print_orders(m: &Measurement, console: &Console) {
+    console.line(&format!(
+        "    {} orders of Strahler, bifurcation ratio {:.2}, twigs {:.3} long, width by length to the {:.2}, dimension {:.2}",
+        m.strahler, m.bifurcation, m.twig, m.width_exponent, m.dimension
     ));
 }
 

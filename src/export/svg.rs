@@ -158,7 +158,12 @@ fn write_costs(marks: &[Mark], view: Sheet<'_>, out: &mut impl Write) -> io::Res
         let lines: String = edges.map(|mark| polyline(&mark.line, view)).collect();
         let grey = (70.0 + 160.0 * share) as u8;
         let colour = &format!("#{grey:02x}{grey:02x}{grey:02x}");
-        write_lines(&lines, &Pen { colour, width: (2.8 - 2.2 * share) * boldness(marks, MarkKind::Costs), is_dashed: false }, view, out)?;
+        write_lines(
+            &lines,
+            &Pen { colour, width: (2.8 - 2.2 * share) * boldness(marks, MarkKind::Costs), is_dashed: false },
+            view,
+            out,
+        )?;
     }
     Ok(())
 }
@@ -172,7 +177,9 @@ fn boldness(marks: &[Mark], kind: MarkKind) -> f64 {
 /// Lines through the points, as they are seen.
 fn polyline(line: &[DVec3], view: Sheet<'_>) -> String {
     let points = line.iter().filter_map(|&p| view.disc(p, 0.0)).zip(0_usize..);
-    points.map(|(Disc { centre: p, .. }, i)| format!("{}{:.2} {:.2}", if i == 0 { 'M' } else { 'L' }, p.x, p.y)).collect()
+    points
+        .map(|(Disc { centre: p, .. }, i)| format!("{}{:.2} {:.2}", if i == 0 { 'M' } else { 'L' }, p.x, p.y))
+        .collect()
 }
 
 /// What lines are drawn with.

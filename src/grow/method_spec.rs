@@ -9,6 +9,7 @@ use super::paths::FractalSpec;
 use super::regions::RegionsSpec;
 use super::segments::SegmentsSpec;
 use super::voxels::VoxelsSpec;
+use super::weber_penn::WeberPennSpec;
 
 /// How limbs come about.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
@@ -28,6 +29,8 @@ pub enum MethodSpec {
     Voxels(VoxelsSpec),
     /// By space colonisation, without a graph, as a baseline (Runions, Lane and Prusinkiewicz 2007).
     Colonise(ColoniseSpec),
+    /// By parameters of each level of stems, without a graph, as a baseline (Weber and Penn 1995).
+    WeberPenn(WeberPennSpec),
     /// By the dielectric breakdown model, as a baseline.
     Dbm(DbmSpec),
     /// By diffusion-limited aggregation, as a baseline.

@@ -8,7 +8,7 @@ use super::rules::Rules;
 use super::space::Space;
 use super::spec::StepSpec;
 use super::step::Method;
-use super::{baselines, colonise, paths, regions, segments, voxels};
+use super::{baselines, colonise, paths, regions, segments, voxels, weber_penn};
 
 impl MethodSpec {
     /// What goes with it.
@@ -20,6 +20,7 @@ impl MethodSpec {
             Self::Segments(_) => &segments::RULES,
             Self::Voxels(_) => &voxels::RULES,
             Self::Colonise(_) => &colonise::RULES,
+            Self::WeberPenn(_) => &weber_penn::RULES,
             Self::Dbm(_) => &baselines::DBM,
             Self::Dla(_) => &baselines::DLA,
         }
@@ -39,6 +40,7 @@ impl MethodSpec {
             Self::Segments(segments) => Arc::new(segments::resolve(segments, step, lookup)?),
             Self::Voxels(voxels) => Arc::new(voxels::resolve(voxels, step, space, lookup)?),
             Self::Colonise(spec) => Arc::new(colonise::resolve(spec, step, lookup)?),
+            Self::WeberPenn(spec) => Arc::new(weber_penn::resolve(spec, step, lookup)),
             Self::Dbm(dbm) => Arc::new(dbm.resolve(step, lookup)),
             Self::Dla(dla) => Arc::new(dla.resolve(space, lookup)),
         })

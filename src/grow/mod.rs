@@ -35,6 +35,7 @@ mod step;
 mod targets;
 mod trial;
 mod voxels;
+mod weber_penn;
 
 pub use baselines::{DbmSpec, DlaSpec, SIDE, Solver, Walk};
 pub use colonise::{Colonise, ColoniseSpec};
@@ -65,3 +66,4 @@ pub use step::{Context, Generators, Method, Step, Unreached, Yield};
 pub use voxels::{
     AgeBranchesSpec, Automaton, Cling, ClingSpec, KeepFromSpec, LightSense, LightSenseSpec, SunSpec, VoxelsSpec,
 };
+pub use weber_penn::{CrownShape, StemSpec, WeberPennSpec};

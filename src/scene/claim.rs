@@ -124,6 +124,8 @@ pub enum Quantity {
     Gaps,
     /// How long the paths of a level are, over those of the level before.
     LevelRatio,
+    /// Exponent of the width of limbs over the length of the longest path to a tip; trees have about 1.5.
+    WidthExponent,
     /// How far to the right (along x) ends are, as a share of how far they spread.
     Lean,
     /// The order of Strahler.

@@ -25,6 +25,7 @@ impl Quantity {
             Self::LengthVariation => m.length_variation,
             Self::Gaps => m.gaps,
             Self::LevelRatio => m.level_ratio,
+            Self::WidthExponent => m.width_exponent,
             Self::Lean => m.lean,
             Self::Strahler => m.strahler as f64,
             Self::Bifurcation => m.bifurcation,

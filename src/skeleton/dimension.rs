@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::Skeleton;
-use crate::math::DVec3;
+use crate::math::{DVec3, slope};
 
 /// log2 of the boxes along the side, 8 to 128: smaller boxes would resolve single limbs, which are lines.
 const SCALES: std::ops::RangeInclusive<u32> = 3..=7;
@@ -35,11 +35,7 @@ pub fn dimension(skeletons: &[&Skeleton]) -> f64 {
             (libm::log(boxes), libm::log((met.len().max(1)) as f64))
         })
         .collect();
-    // The slope of the least-squares line.
-    let count = points.len() as f64;
-    let mean = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / count, y + p.1 / count));
-    let over = points.iter().map(|p| (p.0 - mean.0) * (p.1 - mean.1)).sum::<f64>();
-    over / points.iter().map(|p| (p.0 - mean.0) * (p.0 - mean.0)).sum::<f64>()
+    slope(&points)
 }
 
 #[cfg(test)]

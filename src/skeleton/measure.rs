@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use rand::RngExt;
 use serde::Serialize;
 
-use super::{Orders, Path, Skeleton, dimension};
+use super::{Orders, Path, Skeleton, dimension, width_exponent};
 use crate::math::{DVec3, Stream};
 
 /// Measurements of a skeleton's form.
@@ -37,6 +37,8 @@ pub struct Measurement {
     pub radius: f64,
     /// The greatest radius over the mean radius of the ends of paths.
     pub taper: f64,
+    /// Exponent of the radius over the length of the longest path to a tip ([`width_exponent`]).
+    pub width_exponent: f64,
     /// Box-counting dimension.
     pub dimension: f64,
     /// How many directions hold at least a hundredth of the length each, by tens of degrees, seen along z.
@@ -114,6 +116,7 @@ pub fn measure_from(skeleton: &Skeleton, foot: Option<DVec3>) -> Measurement {
         falling: mean(skeleton.paths.iter().filter(falls).count() as f64, skeleton.paths.len()),
         radius,
         taper: if tips > 0.0 { radius / mean(tips, skeleton.paths.len()) } else { 0.0 },
+        width_exponent: width_exponent(skeleton),
         dimension: dimension(&[skeleton]),
         trunk: forks.first().map_or(length, |&i| along[i]) / top,
     }

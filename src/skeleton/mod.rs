@@ -3,6 +3,7 @@
 //! Later stages need never handle a cycle or a dangling parent: parents precede their children, positions are finite,
 //! radii are finite and above 0 once a width has been given.
 
+mod allometry;
 mod build;
 mod dimension;
 mod form;
@@ -18,6 +19,7 @@ mod strands;
 mod symmetry;
 mod width;
 
+pub use allometry::width_exponent;
 pub use build::{Limb, Path, Skeleton, SkeletonNode};
 pub use dimension::dimension;
 pub use form::{Form, FormSpec};

@@ -50,6 +50,17 @@ pub(super) struct PlantEnd {
 }
 
 impl Plant {
+    /// Bytes of a node while the plant takes its form: here, and in a copy that has it.
+    pub const NODE_BYTES: u64 = 2 * size_of::<PlantNode>() as u64;
+
+    /// Bytes of the plant, and of the skeletons that it is split into.
+    #[must_use]
+    pub fn bytes_to_split(&self) -> usize {
+        self.nodes.capacity() * size_of::<PlantNode>()
+            + self.nodes.len() * size_of::<SkeletonNode>()
+            + self.ends.len() * (size_of::<PlantEnd>() + size_of::<Path>())
+    }
+
     /// Joins the parts: a root of a later part that coincides with a node of an earlier one is that node.
     #[must_use]
     pub fn new(parts: &[PlantPart<'_>]) -> Self {
@@ -85,6 +96,16 @@ impl Plant {
             }
         }
         plant
+    }
+
+    /// All of it as one skeleton, without classes.
+    #[must_use]
+    pub fn whole(self) -> Skeleton {
+        Skeleton {
+            nodes: self.nodes.into_iter().map(|own| own.node).collect(),
+            paths: self.ends.into_iter().map(|end| Path { class: 0, ..end.path }).collect(),
+            classes: Vec::new(),
+        }
     }
 
     /// Length of the segment that ends at node `i`.
@@ -224,6 +245,12 @@ impl Plant {
     #[must_use]
     pub fn split(self) -> Vec<Skeleton> {
         let mut skeletons: Vec<Skeleton> = vec![Skeleton::default(); self.parts];
+        let mut counts = vec![0; self.parts];
+        for own in &self.nodes {
+            let is_copied = own.node.parent.is_some_and(|p| self.nodes[p as usize].part != own.part);
+            counts[own.part as usize] += 1 + usize::from(is_copied);
+        }
+        skeletons.iter_mut().zip(counts).for_each(|(skeleton, count)| skeleton.nodes.reserve_exact(count));
         let mut renamed: Vec<u32> = Vec::with_capacity(self.nodes.len());
         // The copy of an earlier part's node in a later one.
         let mut copies: HashMap<(u32, u32), u32> = HashMap::new();

@@ -412,9 +412,8 @@ impl<'a> Rounds<'a> {
             sectors: Vec::new(),
         };
         let marks = construction.marks(show).map_err(|problem| self.wrong_nodes(problem))?;
-        let put = marks
-            .into_iter()
-            .map(|mark| Mark { line: mark.line.into_iter().map(|p| place.put(p)).collect(), ..mark });
+        let put =
+            marks.into_iter().map(|mark| Mark { line: mark.line.into_iter().map(|p| place.put(p)).collect(), ..mark });
         Ok(put.collect())
     }
 
