@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::memory::bytes_of;
 use super::plants::shape_plants;
+use super::related::related;
 use super::{AssembleError, Recipe, bytes_needed};
 use crate::geom::MarkKind;
 use crate::grow::{Canopy, Context, GrowError, Grown, Regions, Rounds, Step};
@@ -23,9 +24,25 @@ pub fn grow(
     memory: &Memory,
     progress: &Progress,
 ) -> Result<Vec<Grown>, AssembleError> {
+    grow_related(recipe, &(0..recipe.steps.len()).collect::<Vec<_>>(), show, memory, progress)
+}
+
+/// Grows the steps `wanted` and all that have to do with them, as [`grow`] does; the others grow nothing.
+///
+/// # Errors
+/// [`AssembleError`].
+pub fn grow_related(
+    recipe: &Recipe,
+    wanted: &[usize],
+    show: &[MarkKind],
+    memory: &Memory,
+    progress: &Progress,
+) -> Result<Vec<Grown>, AssembleError> {
     recipe.check()?;
     memory.ask(bytes_needed(recipe))?;
-    let grown = recipe.steps.iter().map(|_| None).collect();
+    let nothing = |step: &Step| Grown { name: step.name.clone(), ..Grown::default() };
+    let steps = recipe.steps.iter().zip(related(&recipe.steps, wanted));
+    let grown = steps.map(|(step, is_wanted)| (!is_wanted).then(|| nothing(step))).collect();
     let mut scene = Schedule { recipe, show, memory, progress, grown, repeated: BTreeMap::new() };
     while scene.grown.iter().any(Option::is_none) {
         scene.grow_round()?;

@@ -12,10 +12,11 @@ mod memory;
 mod model;
 mod plants;
 mod recipe;
+mod related;
 
 pub use check::check;
 pub use error::{AssembleError, ObjectKey, ObjectProblem};
-pub use grow::grow;
+pub use grow::{grow, grow_related};
 pub use memory::bytes_needed;
 pub use model::model;
 pub use recipe::{Backdrop, LeavesRecipe, LightsSpec, ObjectRecipe, Recipe};

@@ -9,11 +9,8 @@ use crate::grow::{Grown, Step};
 use crate::math::{DVec3, Memory, OutOfMemory};
 use crate::skeleton::{Plant, PlantPart};
 
-/// Gives plants, which several steps grew together, their widths and their form, within `memory`.
-///
-/// # Errors
-/// [`OutOfMemory`].
-pub(super) fn shape_plants(steps: &[Step], grown: &mut [Grown], memory: &Memory) -> Result<(), OutOfMemory> {
+/// The steps of each plant, in the order of growth, by the step where it starts; those that grew nothing are none.
+fn members_of_plants(steps: &[Step], grown: &[Grown]) -> BTreeMap<usize, Vec<usize>> {
     // The step where each step's plant starts.
     let base = |mut i: usize| loop {
         match steps[i].width.starts_plant() {
@@ -33,10 +30,19 @@ pub(super) fn shape_plants(steps: &[Step], grown: &mut [Grown], memory: &Memory)
     let mut order: Vec<usize> = (0..steps.len()).collect();
     order.sort_by_key(|&i| (depth[i], i));
     for i in order {
-        if let Some(base) = base(i) {
+        if let Some(base) = base(i).filter(|&base| !grown[base].skeleton.nodes.is_empty()) {
             plants.entry(base).or_default().push(i);
         }
     }
+    plants
+}
+
+/// Gives plants, which several steps grew together, their widths and their form, within `memory`.
+///
+/// # Errors
+/// [`OutOfMemory`].
+pub(super) fn shape_plants(steps: &[Step], grown: &mut [Grown], memory: &Memory) -> Result<(), OutOfMemory> {
+    let plants = members_of_plants(steps, grown);
     let feet: Vec<(usize, Option<DVec3>)> = plants
         .iter()
         .flat_map(|(&base, members)| {

@@ -72,7 +72,7 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
             "memory": memory::told(&jobs.memory),
             "seconds": seconds.iter().map(|(stage, s)| ((*stage).to_owned(), json!(s))).collect::<serde_json::Map<_, _>>(),
             "steps": grown.iter().map(step).collect::<Vec<_>>(),
-            "plants": plants.iter().map(|(name, plant)| measures(name, plant, None)).collect::<Vec<_>>(),
+            "plants": plants.iter().map(|(name, plant)| measures("object", name, plant, None)).collect::<Vec<_>>(),
             "claims": claims,
         });
         if console.json {
@@ -82,21 +82,22 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
         console.line(&format!("{}: {} (seed {})", job.name(), scene.recipe.title, scene.recipe.seed));
         grown.iter().for_each(|step| print_step(step, console));
         plants.iter().for_each(|(name, plant)| print_plant(name, plant, console));
-        console.line(&format!(
-            "  {} primitives, {:.1} MB as POV-Ray, {:.1} MB of memory at most",
-            model.primitives(),
-            count.0 as f64 / 1e6,
-            jobs.memory.most() as f64 / 1e6
-        ));
-        let times: Vec<_> = seconds.iter().map(|(stage, s)| format!("{stage} {s:.3} s")).collect();
-        console.line(&format!("  {}", times.join(", ")));
+        print_whole(model.primitives(), count.0, jobs.memory.most(), &seconds, console);
     }
     Ok(())
 }
 
+/// What all of a scene takes.
+fn print_whole(primitives: usize, bytes: u64, memory: u64, seconds: &[(&str, f64)], console: &Console) {
+    let [bytes, memory] = [bytes, memory].map(|bytes| bytes as f64 / 1e6);
+    console.line(&format!("  {primitives} primitives, {bytes:.1} MB as POV-Ray, {memory:.1} MB of memory at most"));
+    let times: Vec<_> = seconds.iter().map(|(stage, s)| format!("{stage} {s:.3} s")).collect();
+    console.line(&format!("  {}", times.join(", ")));
+}
+
 /// The numbers of a step.
 fn step(step: &Grown) -> serde_json::Value {
-    let mut all = measures(&step.name, &step.skeleton, step.foot);
+    let mut all = measures("step", &step.name, &step.skeleton, step.foot);
     all["nodes"] = json!(step.nodes);
     all["edges"] = json!(step.edges);
     all["settled"] = json!(step.settled);
@@ -104,9 +105,9 @@ fn step(step: &Grown) -> serde_json::Value {
     all
 }
 
-/// What is measured of a skeleton.
-fn measures(name: &str, skeleton: &Skeleton, foot: Option<DVec3>) -> serde_json::Value {
-    json!({ "step": name, "skeleton": measure_from(skeleton, foot), "streams": streams(skeleton) })
+/// What is measured of a skeleton, which is a step's or an object's.
+fn measures(of: &str, name: &str, skeleton: &Skeleton, foot: Option<DVec3>) -> serde_json::Value {
+    json!({ of: name, "skeleton": measure_from(skeleton, foot), "streams": streams(skeleton) })
 }
 
 /// The plants of objects that several steps grew, each as one skeleton with the object's name.

@@ -1,7 +1,8 @@
-//! SVG: decoding of sketches, rasterisation of schematics; outlines of letters.
+//! Sketches, as SVG and as JSON; SVG: rasterisation of schematics, outlines of letters.
 
 use resvg::tiny_skia::{self, PathSegment, Pixmap, Point, Transform};
 use resvg::usvg::{self, Group, Node, Tree};
+use serde::Deserialize;
 
 use super::Rgba;
 use crate::math::DVec2;
@@ -17,6 +18,14 @@ pub enum SketchError {
     /// It is not SVG.
     #[error("it is not an SVG picture: {0}")]
     Svg(usvg::Error),
+    /// It is JSON of another kind.
+    #[error(
+        "it is no sketch in JSON, {{ \"size\": [width, height], \"strokes\": [[[x, y], ...], ...], \"points\": [[x, y], ...] }}: {0}"
+    )]
+    Json(serde_json::Error),
+    /// It has a page without area, or a coordinate that is no finite number.
+    #[error("its `size` and coordinates must be finite, and `size` above 0")]
+    NotFinite,
     /// It has no paths.
     #[error("it has no paths")]
     NoPaths,
@@ -70,11 +79,48 @@ fn options() -> usvg::Options<'static> {
     usvg::Options { image_href_resolver: images, ..usvg::Options::default() }
 }
 
-/// Decodes the strokes and outlines of an SVG.
+/// A sketch in JSON: in any unit, from the upper left corner of its page.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Strokes {
+    size: [f64; 2],
+    #[serde(default)]
+    strokes: Vec<Vec<[f64; 2]>>,
+    #[serde(default)]
+    points: Vec<[f64; 2]>,
+}
+
+/// Decodes a sketch in JSON. A stroke that ends where it began is closed.
+fn decode_strokes(bytes: &[u8]) -> Result<Page, SketchError> {
+    let Strokes { size: [width, height], strokes, points } =
+        serde_json::from_slice(bytes).map_err(SketchError::Json)?;
+    let page = |&[x, y]: &[f64; 2]| DVec2::new(x / width, 1.0 - y / height);
+    let points = points.iter().map(|point| (vec![page(point)], false));
+    let strokes = strokes.iter().filter(|stroke| !stroke.is_empty());
+    let strokes = strokes.map(|stroke| {
+        (stroke.iter().map(page).collect::<Vec<_>>(), stroke.len() > 2 && stroke.first() == stroke.last())
+    });
+    let lines: Vec<(Vec<DVec2>, bool)> = strokes.chain(points).collect();
+    let is_finite = lines.iter().flat_map(|(line, _)| line).all(|p| p.is_finite());
+    if lines.is_empty() {
+        Err(SketchError::NoPaths)
+    } else if lines.iter().map(|(line, _)| line.len()).sum::<usize>() > MOST_POINTS {
+        Err(SketchError::TooManyPoints)
+    } else if !(width > 0.0 && height > 0.0 && is_finite) {
+        Err(SketchError::NotFinite)
+    } else {
+        Ok(Page { lines, aspect: width / height })
+    }
+}
+
+/// Decodes the strokes and outlines of a sketch: SVG, or JSON (`{ "size": [width, height], "strokes": ..., "points": ... }`).
 ///
 /// # Errors
-/// [`SketchError::Svg`], [`SketchError::NoPaths`], [`SketchError::TooManyPoints`].
+/// [`SketchError`].
 pub fn decode_sketch(bytes: &[u8]) -> Result<Page, SketchError> {
+    if bytes.trim_ascii_start().starts_with(b"{") {
+        return decode_strokes(bytes);
+    }
     let tree = Tree::from_data(bytes, &options()).map_err(SketchError::Svg)?;
     let size = tree.size();
     let mut page = Page { lines: Vec::new(), aspect: f64::from(size.width()) / f64::from(size.height()) };
@@ -260,5 +306,25 @@ mod tests {
         assert!((points[1] - DVec2::new(0.75, 0.5)).length() < 1e-3, "{points:?}");
         assert!(decode_sketch(b"<svg xmlns='http://www.w3.org/2000/svg'/>").is_err());
         assert!(decode_sketch(b"\x89PNG").is_err());
+    }
+
+    #[test]
+    fn reads_json() {
+        let json = r#" { "size": [100, 50], "strokes": [[[0, 50], [50, 0]], [[10, 10], [30, 10], [10, 10]]], "points": [[75, 25]] }"#;
+        let page = decode_sketch(json.as_bytes()).unwrap();
+        assert_eq!(page.lines[0], (vec![DVec2::ZERO, DVec2::new(0.5, 1.0)], false));
+        assert!(page.lines[1].1);
+        let points: Vec<_> = page.points().collect();
+        assert_eq!((points[0], points[2]), (DVec2::new(0.5, 1.0), DVec2::new(0.75, 0.5)));
+        for (wrong, word) in [
+            (r#"{ "size": [100, 50] }"#, "no paths"),
+            (r#"{ "size": [0, 50], "points": [[1, 2]] }"#, "above 0"),
+            (r#"{ "size": [1, 1], "points": [[1]] }"#, "line 1 column"),
+            (r#"{ "size": [1, 1], "stroke": [] }"#, "unknown field"),
+            ("{", "line 1"),
+        ] {
+            let said = decode_sketch(wrong.as_bytes()).unwrap_err().to_string();
+            assert!(said.contains(word), "{said}");
+        }
     }
 }

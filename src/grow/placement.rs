@@ -24,7 +24,9 @@ pub(super) fn placement(
         lookup.wrong(key, message.to_owned());
         return None;
     }
-    match (&spec.count, &spec.at, &spec.sketch, &spec.through, &spec.grammar) {
+    let drawn = spec.sketch.as_ref().map(|file| (file, false)).or(spec.strokes.as_ref().map(|file| (file, true)));
+    let is_drawn_twice = spec.sketch.is_some() && spec.strokes.is_some();
+    match (&spec.count, &spec.at, drawn.filter(|_| !is_drawn_twice), &spec.through, &spec.grammar) {
         (Some(count), None, None, None, None) => random(key, own, spec, count, space, rounds, lookup),
         (None, Some(points), None, None, None) => {
             if points.is_empty() {
@@ -42,19 +44,39 @@ pub(super) fn placement(
             let ends = grammar.endpoints(space?.up() == 1);
             note(lookup, &format!("{key}.grammar"), ends).map(Placement::At)
         }
-        (None, None, Some(file), None, None) => {
+        (None, None, Some((file, is_followed)), None, None) => {
             let space = space?;
             let frame = space.shape().bounds();
-            let (_, points) = lookup.sketch(&format!("{key}.sketch"), file, frame, space.up())?;
+            let own = if is_followed { "strokes" } else { "sketch" };
+            let (lines, points) = lookup.sketch(&format!("{key}.{own}"), file, frame, space.up())?;
             let raise = |p: DVec3| if space.up() == 1 { p } else { DVec3::new(p.x, frame.centre().y, p.y) };
-            Some(Placement::At(points.into_iter().map(raise).collect()))
+            if !is_followed {
+                return Some(Placement::At(points.into_iter().map(raise).collect()));
+            }
+            let stops =
+                |line: Vec<DVec3>| thinned(&line.into_iter().map(raise).collect::<Vec<_>>(), 2.0 * space.spacing());
+            // A point alone is no stroke.
+            Some(Placement::Through(lines.into_iter().filter(|line| line.len() > 1).map(stops).collect()))
         }
         _ => {
-            let message = "endpoints need exactly one of `count` (at random), `at` (a list), `through` (lists), `sketch` (an SVG file) and `grammar` (an L-system)";
+            let message = "endpoints need exactly one of `count` (at random), `at` (a list), `through` (lists), `sketch` or `strokes` (a file) and `grammar` (an L-system)";
             lookup.wrong(key, message.to_owned());
             None
         }
     }
+}
+
+/// Points of a line that are `apart` from the one before, and its last.
+fn thinned(line: &[DVec3], apart: f64) -> Vec<DVec3> {
+    let Some((&last, rest)) = line.split_last() else { return Vec::new() };
+    let mut kept: Vec<DVec3> = Vec::new();
+    for &p in rest {
+        if p.distance(last) >= apart && kept.last().is_none_or(|before| before.distance(p) >= apart) {
+            kept.push(p);
+        }
+    }
+    kept.push(last);
+    kept
 }
 
 /// Notes keys of random placement where nothing is placed at random.

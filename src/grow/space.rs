@@ -109,6 +109,16 @@ impl Space {
         }
     }
 
+    /// How far apart its nodes are, in scene units.
+    #[must_use]
+    pub fn spacing(&self) -> f64 {
+        match self {
+            Self::Lattice(space) => space.window.spacing,
+            Self::Scatter(space) => space.spacing,
+            Self::Voxels(space) => space.side,
+        }
+    }
+
     /// Index of the coordinate that points up: y in the plane, z in space.
     #[must_use]
     pub fn up(&self) -> usize {

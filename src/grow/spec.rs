@@ -130,7 +130,7 @@ pub struct NearSpec {
     pub shorten: f64,
 }
 
-/// A set of endpoints: exactly one of `count`, `at`, `through`, `sketch` and `grammar`. Adding to `count` keeps those already placed.
+/// A set of endpoints: exactly one of `count`, `at`, `through`, `sketch`, `strokes` and `grammar`. Adding to `count` keeps those already placed.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EndpointSpec {
@@ -160,10 +160,15 @@ pub struct EndpointSpec {
     /// endpoint.
     #[serde(default)]
     pub through: Option<Vec<Vec<Point>>>,
-    /// Endpoints from an SVG file, its page stretched over the space's shape: the middle of each closed outline and
-    /// the end of each open stroke.
+    /// Endpoints from a sketch, its page stretched over the space's shape: the middle of each closed outline and the end of each
+    /// open stroke. SVG, or JSON as an editor of strokes writes it: `{ "size": [width, height], "strokes": [[[x, y], ...], ...],
+    /// "points": [[x, y], ...] }`, from the upper left corner.
     #[serde(default)]
     pub sketch: Option<String>,
+    /// Endpoints at the ends of a sketch's strokes, each reached along its whole stroke: paths go through places of it, two spacings
+    /// of the graph apart.
+    #[serde(default)]
+    pub strokes: Option<String>,
     /// Endpoints from an L-system.
     #[serde(default)]
     pub grammar: Option<GrammarSpec>,

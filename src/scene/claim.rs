@@ -120,7 +120,7 @@ pub enum Quantity {
     Directions,
     /// How different ways to the ends are in length.
     LengthVariation,
-    /// How much room there is between ends.
+    /// How much room there is between ends: 1 for ends at random in a ball (in the plane, a disc), more where they form clusters.
     Gaps,
     /// How long the paths of a level are, over those of the level before.
     LevelRatio,

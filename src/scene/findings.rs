@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::claim::{Claim, Claimed, Quantity};
 use super::load::load_frame;
-use super::loaded::{Loaded, Stage, grow};
+use super::loaded::{Loaded, Stage, grow_related};
 use crate::geom::{Shape, Surface};
 use crate::grow::{Grown, Regions, Step};
 use crate::math::{DVec3, Memory, Progress, Ref};
@@ -167,10 +167,17 @@ pub fn check_claims(
         let most = claims().filter(|claim| claim.frame == frame).map(|claim| claim.seeds).max().unwrap_or(1);
         for i in 0..most {
             other.recipe.seed = scene.recipe.seed.wrapping_add(i.into());
-            let anew = if i == 0 && frame.is_none() { None } else { Some(grow(&other, &[], memory, progress)?) };
+            let is_asked = |claimed: &Claimed| claimed.claim.frame == frame && i < claimed.claim.seeds;
+            let anew = if i == 0 && frame.is_none() {
+                None
+            } else {
+                let asked = scene.claims.values().filter(|claimed| is_asked(claimed));
+                let steps: Vec<usize> = asked.flat_map(|claimed| claimed.steps(&other.recipe.steps)).collect();
+                Some(grow_related(&other, &steps, memory, progress)?)
+            };
             let grown = anew.as_deref().unwrap_or(grown);
             for (readings, claimed) in readings.iter_mut().zip(scene.claims.values()) {
-                if claimed.claim.frame == frame && i < claimed.claim.seeds {
+                if is_asked(claimed) {
                     readings.extend(reading(claimed, grown));
                 }
             }
@@ -178,6 +185,20 @@ pub fn check_claims(
     }
     let findings = scene.claims.iter().zip(&readings).filter(|(_, readings)| !readings.is_empty());
     Ok(findings.map(|((name, Claimed { claim, .. }), readings)| finding(name, claim, readings)).collect())
+}
+
+impl Claimed {
+    /// The steps that it is about, by index.
+    fn steps(&self, steps: &[Step]) -> Vec<usize> {
+        // A shape may be what any of them grew.
+        if self.shape.is_some() {
+            return (0..steps.len()).collect();
+        }
+        let Claim { of, with, as_of, more_than, .. } = &self.claim;
+        let named = [Some(of), with.as_ref(), as_of.as_ref(), more_than.as_ref()];
+        let index = |name: &Ref<Step>| steps.iter().position(|step| step.name == name.name);
+        named.into_iter().flatten().filter_map(index).collect()
+    }
 }
 
 /// What was measured with one seed: of the claim's step, and of those that it is held against.

@@ -144,6 +144,19 @@ pub fn grow(scene: &Loaded, show: &[MarkKind], memory: &Memory, progress: &Progr
     assemble::grow(&scene.recipe, show, memory, progress).map_err(|error| scene.place(error))
 }
 
+/// Grows the steps `wanted` and all that have to do with them; the others grow nothing.
+///
+/// # Errors
+/// [`Stage`], as of [`grow`].
+pub(super) fn grow_related(
+    scene: &Loaded,
+    wanted: &[usize],
+    memory: &Memory,
+    progress: &Progress,
+) -> Result<Vec<Grown>, Stage> {
+    assemble::grow_related(&scene.recipe, wanted, &[], memory, progress).map_err(|error| scene.place(error))
+}
+
 /// The model of `scene` from what its steps yielded, for a picture of `size` pixels, within `memory`.
 ///
 /// # Errors

@@ -1,6 +1,7 @@
 //! Measurements of a skeleton's form.
 
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 
 use rand::RngExt;
 use serde::Serialize;
@@ -45,8 +46,8 @@ pub struct Measurement {
     pub directions: usize,
     /// Coefficient of variation of the path lengths from a root to an end from which nothing grew.
     pub length_variation: f64,
-    /// Mean distance of the midpoint of two ends from the nearest end, over the mean distance of two ends: small where ends
-    /// fill a volume, large where they form clusters.
+    /// Mean distance of the midpoint of two ends from the nearest end, over the mean distance of two ends, and over what both are
+    /// for as many ends at random in a ball (in the plane, in a disc): 1 there, more where ends form clusters or leave room.
     pub gaps: f64,
     /// Mean distance between ends and the roots of their graphs, each level over the one before (geometric mean).
     pub level_ratio: f64,
@@ -220,7 +221,16 @@ fn gaps(ends: &[DVec3]) -> f64 {
         room += libm::sqrt(nearest);
         apart += a.distance(b);
     }
-    if apart > 0.0 { room / apart } else { 0.0 }
+    // At random in a ball of radius 1 the nearest of n is Gamma(4/3) / n^(1/3) away (Hertz 1909), two are 36/35 apart; in a disc
+    // these are 1 / (2 sqrt(n)) times the root of pi, and 128 / (45 pi).
+    let n = ends.len() as f64;
+    let is_flat = ends.iter().all(|p| p.z == ends[0].z);
+    let even = if is_flat {
+        0.5 * libm::sqrt(PI / n) / (128.0 / (45.0 * PI))
+    } else {
+        0.892_979_511_569_249 / libm::cbrt(n) / (36.0 / 35.0)
+    };
+    if apart > 0.0 { room / apart / even } else { 0.0 }
 }
 
 /// [`Measurement::level_ratio`].
@@ -237,5 +247,37 @@ fn level_ratio(skeleton: &Skeleton) -> f64 {
             libm::exp(libm::log(last / first) / (means.len() as f64 - 1.0))
         }
         _ => 1.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points at random in a ball or a disc around `centre`.
+    fn scattered(count: usize, centre: DVec3, is_flat: bool, random: &mut Stream) -> Vec<DVec3> {
+        let mut points = Vec::new();
+        while points.len() < count {
+            let p = DVec3::from_array(std::array::from_fn(|_| 2.0 * random.random::<f64>() - 1.0));
+            let p = if is_flat { p.with_z(0.0) } else { p };
+            if p.length() < 1.0 {
+                points.push(p + centre);
+            }
+        }
+        points
+    }
+
+    #[test]
+    fn gaps_do_not_depend_on_how_many_ends_there_are() {
+        let mut random = Stream::new(7, "ends");
+        for is_flat in [false, true] {
+            for count in [200, 2_000, 10_000] {
+                let even = gaps(&scattered(count, DVec3::ZERO, is_flat, &mut random));
+                assert!((even - 1.0).abs() < 0.1, "{count}: {even}");
+                let mut two = scattered(count / 2, DVec3::X * 3.0, is_flat, &mut random);
+                two.extend(scattered(count / 2, -DVec3::X * 3.0, is_flat, &mut random));
+                assert!(gaps(&two) > 2.0, "{count}: {}", gaps(&two));
+            }
+        }
     }
 }

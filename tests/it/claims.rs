@@ -1,21 +1,18 @@
 //! The papers' scenes: their claims hold at any seed, and each can fail.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
 use lichtenberg::math::{Memory, Progress};
 use lichtenberg::scene::{Finding, Stage, check_claims, grow};
 use rayon::prelude::*;
 
-use crate::support::sample::sample;
-use crate::support::{embedded, root, scene_names};
+use crate::papers::{Measured, keep, measured, papers};
+use crate::support::sample::{sample, tests_all};
+use crate::support::{embedded, root};
 
 /// The seeds that every scene is held to; a push takes a sample of scenes and seeds.
 const SEEDS: [u64; 8] = [1, 2, 3, 4, 5, 6, 7, 8];
-
-fn papers() -> Vec<String> {
-    scene_names().into_iter().filter(|name| name.starts_with("papers/")).collect()
-}
 
 /// What is found of a scene's claims with some changes.
 fn found(name: &str, changes: &[(&str, &str)]) -> Result<Vec<Finding>, Stage> {
@@ -25,20 +22,34 @@ fn found(name: &str, changes: &[(&str, &str)]) -> Result<Vec<Finding>, Stage> {
     check_claims(&scene, &grown, &memory, &progress)
 }
 
+/// Every claim holds, and is what the table beside the scenes has; with all seeds, UPDATE=1 writes that anew.
 #[test]
 fn claims_hold_at_any_seed() {
     let runs = papers().into_iter().flat_map(|name| SEEDS.map(|seed| format!("{name}#{seed}"))).collect();
-    let failed: Vec<String> = sample(runs, 10)
+    let all: Vec<(String, Finding)> = sample(runs, 10)
         .par_iter()
         .with_max_len(1)
         .flat_map_iter(|run| {
             let (name, seed) = run.split_once('#').unwrap();
             let findings = found(name, &[("seed", seed)]).unwrap_or_else(|error| panic!("{run}: {error}"));
-            let broken = findings.into_iter().filter(|finding| !finding.holds);
-            broken.map(move |f| format!("{run}: {}: {}, not {} ({})", f.claim, f.measured, f.against, f.says))
+            findings.into_iter().map(move |finding| (run.clone(), finding))
         })
         .collect();
+    let told =
+        |(run, f): &(String, Finding)| format!("{run}: {}: {}, not {} ({})", f.claim, f.measured, f.against, f.says);
+    let failed: Vec<String> = all.iter().filter(|(_, finding)| !finding.holds).map(told).collect();
     assert!(failed.is_empty(), "{failed:#?}");
+    let key = |run: &str, finding: &Finding| (run.split_once('#').unwrap().0.to_owned(), finding.claim.clone());
+    if std::env::var_os("UPDATE").is_some() {
+        assert!(tests_all(), "with UPDATE=1 set LICHTENBERG_TEST_ALL=1: the table has all seeds");
+        let mut by_claim: BTreeMap<_, Vec<&Finding>> = BTreeMap::new();
+        all.iter().for_each(|(run, finding)| by_claim.entry(key(run, finding)).or_default().push(finding));
+        keep(&by_claim.into_iter().map(|(key, findings)| (key, Measured::of(&findings))).collect());
+    }
+    let table = measured();
+    let is_other = |(run, finding): &&(String, Finding)| !table[&key(run, finding)].holds(finding.measured);
+    let other: Vec<String> = all.iter().filter(is_other).map(told).collect();
+    assert!(other.is_empty(), "not as in scenes/papers/measured.tsv: {other:#?}");
 }
 
 /// Of the table beside the scenes, which says of each claim what changes of its scene break it.

@@ -17,6 +17,7 @@ mod limits;
 mod mutated;
 mod new;
 mod outputs;
+mod papers;
 mod povray;
 mod preview;
 mod readme;

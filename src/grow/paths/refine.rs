@@ -82,23 +82,24 @@ struct Round<'a> {
 }
 
 impl Round<'_> {
+    /// The pieces of a chain of coarse nodes, planned again.
+    fn pieces(&self, chain: &[u32], coarse: &Skeleton, scale: f64) -> Result<Vec<Piece>, GrowError> {
+        let mut pieces = Vec::new();
+        for start in (0..chain.len() - 1).step_by(PIECE) {
+            let end = (start + PIECE).min(chain.len() - 1);
+            let nodes = chain[start..=end].iter().map(|&i| &coarse.nodes[i as usize]);
+            let first = coarse.nodes[chain[start] as usize].cost;
+            let points = nodes.map(|n| (n.position, (n.cost - first) / scale));
+            pieces.push(self.piece(&points.collect::<Vec<_>>())?);
+        }
+        Ok(pieces)
+    }
+
     /// The finer skeleton, and marks of the lattices that it lies in.
     fn apply(&self, coarse: &Skeleton, scale: f64) -> Result<(Skeleton, Vec<Mark>), GrowError> {
         let chains = chains(coarse);
-        let refined: Result<Vec<Vec<Piece>>, GrowError> = chains
-            .par_iter()
-            .map(|chain| {
-                let mut pieces = Vec::new();
-                for start in (0..chain.len() - 1).step_by(PIECE) {
-                    let end = (start + PIECE).min(chain.len() - 1);
-                    let nodes = chain[start..=end].iter().map(|&i| &coarse.nodes[i as usize]);
-                    let first = coarse.nodes[chain[start] as usize].cost;
-                    let points = nodes.map(|n| (n.position, (n.cost - first) / scale));
-                    pieces.push(self.piece(&points.collect::<Vec<_>>())?);
-                }
-                Ok(pieces)
-            })
-            .collect();
+        let refined: Result<Vec<Vec<Piece>>, GrowError> =
+            chains.par_iter().map(|chain| self.pieces(chain, coarse, scale)).collect();
 
         let mut fine = Skeleton::new(coarse.classes.clone());
         let mut known: HashMap<[i32; 3], u32> = HashMap::new();
