@@ -68,6 +68,9 @@ pub fn draw(
 ) -> Result<Drawn, Failure> {
     let means = means(args, scene);
     // What is wrong with the call is said before long work.
+    if means != Means::Schematic && args.show.iter().any(|show| show.mark().is_some()) {
+        return Err(Failure::Usage("marks of the construction are drawn with --schematic".to_owned()));
+    }
     if matches!(means, Means::Schematic | Means::Glow) {
         refuse_tracing(args, data, means)?;
     }

@@ -75,7 +75,7 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
     Ok(())
 }
 
-/// Refuses pictures that cannot be written, and marks that are not drawn.
+/// Refuses pictures that cannot be written.
 fn check(args: &RenderArgs, outputs: &[PathBuf]) -> Result<(), Failure> {
     let traces = args.with.is_none() && !args.schematic;
     for output in outputs {
@@ -83,9 +83,6 @@ fn check(args: &RenderArgs, outputs: &[PathBuf]) -> Result<(), Failure> {
     }
     if let Some(sheet) = &args.sheet {
         require_picture(sheet, false)?;
-    }
-    if !args.schematic && args.show.iter().any(|show| show.mark().is_some()) {
-        return Err(Failure::Usage("marks of the construction are drawn with --schematic".to_owned()));
     }
     Ok(())
 }

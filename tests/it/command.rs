@@ -352,3 +352,33 @@ fn info_measures_what_a_scene_claims() {
     let dimension = info["steps"][0]["skeleton"]["dimension"].as_f64().unwrap();
     assert!((0.9..1.6).contains(&dimension), "{dimension}");
 }
+
+/// A scene with `show` is drawn without a flag, and traced where a look is asked for; options of tracing are refused until then.
+#[test]
+fn what_shows_its_construction_is_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let small = ["render", "papers/2012-fig03", "--size", "80x70", "--quiet", "-o"];
+    let picture = |more: &[&str]| {
+        succeed_in(at, &[&small[..], more].concat());
+        fs::read(at.join(more[0])).unwrap()
+    };
+    let drawn = picture(&["drawn.png"]);
+    assert_eq!(drawn, picture(&["schematic.png", "--schematic"]));
+    assert_ne!(drawn, picture(&["traced.png", "--look", "exact"]));
+    assert_ne!(drawn, picture(&["nodes.png", "--show", "nodes"]));
+    fails(at, &[&small[..], &["x.png", "--samples", "4"]].concat(), 2, &["--samples", "--look"]);
+    fails(at, &[&small[..], &["x.exr"]].concat(), 2, &["EXR", "--look"]);
+    // What the marks are.
+    let svg = |scene: &str, marks: &str| {
+        succeed_in(at, &["export", scene, "--to", "svg", "--name", "marks", "--show", marks, "--quiet"]);
+        fs::read_to_string(at.join("marks.svg")).unwrap()
+    };
+    assert_eq!(svg("papers/2012-fig03", "sectors").matches("stroke-dasharray").count(), 1);
+    let costs = svg("papers/2012-fig02", "costs");
+    let tones = (0..8)
+        .filter(|step| costs.contains(&format!("stroke=\"#{0:02x}{0:02x}{0:02x}\"", 70 + 160 * step / 7)))
+        .count();
+    assert_eq!(tones, 8, "edges have eight tones");
+    fails(at, &["export", "papers/2008-fig01", "--to", "svg", "--show", "sectors"], 2, &["Yao graphs in the plane"]);
+}

@@ -17,8 +17,8 @@ const VERBS: [(&str, &[&str]); 5] = [
     ("info", &["info", "SCENE", "--json"]),
     ("rib", &["export", "SCENE", "--to", "rib", "--json"]),
     ("ply", &["export", "SCENE", "--to", "ply", "--json"]),
-    ("png", &["render", "SCENE", "--size", "320x240", "--samples", "1", "-o", "a.png", "--json"]),
-    ("exr", &["render", "SCENE", "--size", "640x480", "--samples", "1", "-o", "a.exr", "--json"]),
+    ("png", &["render", "SCENE", "--size", "320x240", "--look", "studio", "--samples", "1", "-o", "a.png", "--json"]),
+    ("exr", &["render", "SCENE", "--size", "640x480", "--look", "studio", "--samples", "1", "-o", "a.exr", "--json"]),
 ];
 
 /// Estimate and peak of a call, in bytes.

@@ -1,6 +1,7 @@
 //! The tests from outside, one program: linking is most of what a test costs to build.
 
 mod architecture;
+mod baselines;
 mod claims;
 mod command;
 mod compare;
