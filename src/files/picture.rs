@@ -119,6 +119,58 @@ pub fn decode_light(bytes: &[u8]) -> Result<Rgba, PictureError> {
 /// # Errors
 /// [`PictureError`].
 pub fn decode_linear(bytes: &[u8]) -> Result<Layers, PictureError> {
+    match png_channels(bytes) {
+        Some(([width, height], channels)) => {
+            Ok(Layers { width, height, channels, texts: png_texts(bytes), ..Layers::default() })
+        }
+        None => decode_whole(bytes),
+    }
+}
+
+/// The size of a PNG and its channels in linear light, premultiplied, row by row: nothing else of it is kept, since pictures are
+/// large. `None` where it is interlaced, or is to be refused.
+fn png_channels(bytes: &[u8]) -> Option<([u32; 2], Vec<Channel>)> {
+    let limits = png::Limits { bytes: MOST_BYTES as usize };
+    let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().ok()?;
+    let info = reader.info();
+    let (size, is_interlaced) = ([info.width, info.height], info.interlaced);
+    let pixels = u64::from(size[0]) * u64::from(size[1]);
+    if is_interlaced || size.iter().any(|&side| side > MOST_SIDE) || pixels.saturating_mul(8) > MOST_BYTES {
+        return None;
+    }
+    let (colour, depth) = reader.output_color_type();
+    let (samples, is_wide) = (colour.samples(), depth == png::BitDepth::Sixteen);
+    // Which samples of a pixel are red, green, blue and alpha.
+    let (rgb, alpha) = match colour {
+        png::ColorType::Grayscale => ([0; 3], None),
+        png::ColorType::GrayscaleAlpha => ([0; 3], Some(1)),
+        png::ColorType::Rgb => ([0, 1, 2], None),
+        png::ColorType::Rgba => ([0, 1, 2], Some(3)),
+        png::ColorType::Indexed => return None,
+    };
+    let mut values: [Vec<f32>; 4] = std::array::from_fn(|_| Vec::with_capacity(pixels as usize));
+    while let Some(row) = reader.next_row().ok()? {
+        for pixel in row.data().chunks_exact(if is_wide { 2 * samples } else { samples }) {
+            let sample = |i: usize| match is_wide {
+                true => f64::from(u16::from_be_bytes([pixel[2 * i], pixel[2 * i + 1]])) / 65535.0,
+                false => f64::from(pixel[i]) / 255.0,
+            };
+            let a = alpha.map_or(1.0, sample);
+            for (channel, i) in values.iter_mut().zip(rgb) {
+                channel.push((from_srgb(sample(i)) * a) as f32);
+            }
+            values[3].push(a as f32);
+        }
+    }
+    let channel = |(values, name): (Vec<f32>, &str)| Channel { name: name.to_owned(), values, is_half: false };
+    let is_whole = values[3].len() as u64 == pixels;
+    is_whole.then(|| (size, values.into_iter().zip(["R", "G", "B", "A"]).map(channel).collect()))
+}
+
+/// Decodes a picture of any format as [`decode_linear`] does, all at once.
+fn decode_whole(bytes: &[u8]) -> Result<Layers, PictureError> {
     let picture = decode(bytes)?;
     let (width, height) = (picture.width(), picture.height());
     // Pixels of a byte a channel are not blown up: pictures are large.
@@ -244,5 +296,36 @@ mod tests {
         assert_eq!(decode_png(&bytes).unwrap(), picture);
         assert!(decode_png(&bytes[..40]).is_err());
         assert!(matches!(decode_grey(b"no picture"), Err(PictureError::Format)));
+    }
+
+    /// Row by row every kind of PNG gives the same bits as all at once; what is damaged is refused as there.
+    #[test]
+    fn rows_are_the_picture() {
+        let noise = DynamicImage::from(ImageBuffer::from_fn(19, 7, |x, y| {
+            image::Rgba(
+                [0, 1, 2, 3].map(|i| (x * 7919 + y * 104_729 + i * 1_299_709).wrapping_mul(2_654_435_761) as u16),
+            )
+        }));
+        let kinds = [
+            DynamicImage::from(noise.to_luma8()),
+            DynamicImage::from(noise.to_luma_alpha8()),
+            DynamicImage::from(noise.to_rgb8()),
+            DynamicImage::from(noise.to_rgba8()),
+            DynamicImage::from(noise.to_luma16()),
+            DynamicImage::from(noise.to_luma_alpha16()),
+            DynamicImage::from(noise.to_rgb16()),
+            noise,
+        ];
+        for kind in kinds {
+            let mut bytes = Cursor::new(Vec::new());
+            kind.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+            let bytes = bytes.into_inner();
+            let ([width, height], channels) = png_channels(&bytes).unwrap();
+            let whole = decode_whole(&bytes).unwrap();
+            assert_eq!((width, height, &channels), (whole.width, whole.height, &whole.channels), "{:?}", kind.color());
+            assert!(
+                png_channels(&bytes[..bytes.len() / 2]).is_none() && decode_linear(&bytes[..bytes.len() / 2]).is_err()
+            );
+        }
     }
 }
