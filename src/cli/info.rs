@@ -13,7 +13,7 @@ use super::memory;
 use crate::assemble::Recipe;
 use crate::export::{Pov, Templates};
 use crate::grow::Grown;
-use crate::math::DVec3;
+use crate::math::Memory;
 use crate::scene;
 use crate::skeleton::{Measurement, Orders, Plant, PlantPart, Skeleton, measure_from};
 
@@ -53,7 +53,8 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
         lap("claims");
         let model = scene::model(&scene, &grown, scene.recipe.size, &jobs.memory, &progress)?;
         lap("model");
-        let plants = whole_plants(&scene.recipe, &grown);
+        let taken = model.bytes() as u64 + grown.iter().map(|step| step.bytes() as u64).sum::<u64>();
+        let plants = whole_plants(&scene.recipe, &grown, &jobs.memory.beside(taken))?;
         let mut count = Count::default();
         Pov::new(&model, &Templates::default(), "scene", scene.recipe.size, &job.origin(scene.recipe.seed, "info"))
             .write_inc(&mut count)
@@ -72,7 +73,7 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
             "memory": memory::told(&jobs.memory),
             "seconds": seconds.iter().map(|(stage, s)| ((*stage).to_owned(), json!(s))).collect::<serde_json::Map<_, _>>(),
             "steps": grown.iter().map(step).collect::<Vec<_>>(),
-            "plants": plants.iter().map(|(name, plant)| measures("object", name, plant, None)).collect::<Vec<_>>(),
+            "plants": plants.iter().map(|(plant, _)| plant).collect::<Vec<_>>(),
             "claims": claims,
         });
         if console.json {
@@ -81,7 +82,7 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
         }
         console.line(&format!("{}: {} (seed {})", job.name(), scene.recipe.title, scene.recipe.seed));
         grown.iter().for_each(|step| print_step(step, console));
-        plants.iter().for_each(|(name, plant)| print_plant(name, plant, console));
+        plants.iter().for_each(|(plant, m)| print_plant(plant, m, console));
         print_whole(model.primitives(), count.0, jobs.memory.most(), &seconds, console);
     }
     Ok(())
@@ -97,7 +98,7 @@ fn print_whole(primitives: usize, bytes: u64, memory: u64, seconds: &[(&str, f64
 
 /// The numbers of a step.
 fn step(step: &Grown) -> serde_json::Value {
-    let mut all = measures("step", &step.name, &step.skeleton, step.foot);
+    let mut all = measures("step", &step.name, &step.skeleton, &measure_from(&step.skeleton, step.foot));
     all["nodes"] = json!(step.nodes);
     all["edges"] = json!(step.edges);
     all["settled"] = json!(step.settled);
@@ -106,23 +107,34 @@ fn step(step: &Grown) -> serde_json::Value {
 }
 
 /// What is measured of a skeleton, which is a step's or an object's.
-fn measures(of: &str, name: &str, skeleton: &Skeleton, foot: Option<DVec3>) -> serde_json::Value {
-    json!({ of: name, "skeleton": measure_from(skeleton, foot), "streams": streams(skeleton) })
+fn measures(of: &str, name: &str, skeleton: &Skeleton, m: &Measurement) -> serde_json::Value {
+    json!({ of: name, "skeleton": m, "streams": streams(skeleton) })
 }
 
-/// The plants of objects that several steps grew, each as one skeleton with the object's name.
-fn whole_plants(recipe: &Recipe, grown: &[Grown]) -> Vec<(String, Skeleton)> {
-    let several = recipe.objects.iter().filter(|object| object.steps.len() > 1);
-    let whole = several.map(|object| {
+/// What is measured of the plants of objects that several steps grew, each as one skeleton.
+fn whole_plants(
+    recipe: &Recipe,
+    grown: &[Grown],
+    memory: &Memory,
+) -> Result<Vec<(serde_json::Value, Measurement)>, Failure> {
+    let mut plants = Vec::new();
+    for object in recipe.objects.iter().filter(|object| object.steps.len() > 1) {
+        let nodes = object.steps.iter().map(|&i| grown[i].skeleton.nodes.len() as u64).sum::<u64>();
+        let asked = memory.ask(nodes * Plant::WHOLE_BYTES);
+        asked.map_err(|error| Failure::Usage(format!("measuring the plant needs {error}: raise --max-memory")))?;
         let part = |&i: &usize| PlantPart {
             skeleton: &grown[i].skeleton,
             width: &recipe.steps[i].width,
             first_level: grown[i].first_level,
         };
         let parts: Vec<PlantPart<'_>> = object.steps.iter().map(part).collect();
-        (object.name.clone(), Plant::new(&parts).whole())
-    });
-    whole.filter(|(_, plant)| !plant.nodes.is_empty()).collect()
+        let plant = Plant::new(&parts).whole();
+        if !plant.nodes.is_empty() {
+            let m = measure_from(&plant, None);
+            plants.push((measures("object", &object.name, &plant, &m), m));
+        }
+    }
+    Ok(plants)
 }
 
 fn print_step(step: &Grown, console: &Console) {
@@ -134,13 +146,13 @@ fn print_step(step: &Grown, console: &Console) {
     print_orders(&m, console);
 }
 
-fn print_plant(name: &str, plant: &Skeleton, console: &Console) {
-    let m = measure_from(plant, None);
+fn print_plant(plant: &serde_json::Value, m: &Measurement, console: &Console) {
+    let name = plant["object"].as_str().unwrap_or_default();
     console.line(&format!(
         "  object {name}, all its steps: {} endpoints, {} skeleton nodes, tortuosity {:.3}, spread {:.3}",
         m.endpoints, m.nodes, m.tortuosity, m.spread
     ));
-    print_orders(&m, console);
+    print_orders(m, console);
 }
 
 fn print_orders(m: &Measurement, console: &Console) {

@@ -52,6 +52,8 @@ pub enum Key {
     Symmetry,
     /// Strands.
     Strands,
+    /// Refinement.
+    Refine,
     /// The number of its rounds.
     Rounds,
 }
@@ -138,6 +140,18 @@ pub enum Problem {
     /// A class without a number.
     #[error("{0}")]
     Width(String),
+    /// A round of refinement that plans among too many nodes.
+    #[error(
+        "round {round} plans among {count} nodes, more than {most}: use fewer `times`, or a smaller `ratio` or `reach`"
+    )]
+    TooRefined {
+        /// The round, from 1.
+        round: u32,
+        /// How many.
+        count: u64,
+        /// How many there may be.
+        most: u64,
+    },
     /// Too many nodes of a skeleton.
     #[error("{count} nodes are more than {most}: use fewer endpoints, pieces or parts")]
     TooManyNodes {

@@ -115,6 +115,7 @@ impl Loaded {
             Key::Width => "width".to_owned(),
             Key::Symmetry => "symmetry".to_owned(),
             Key::Strands => "strands".to_owned(),
+            Key::Refine => "refine".to_owned(),
             Key::Rounds => "repeat.times".to_owned(),
         };
         format!("grow.{name}.{own}")

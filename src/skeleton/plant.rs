@@ -53,6 +53,10 @@ impl Plant {
     /// Bytes of a node while the plant takes its form: here, and in a copy that has it.
     pub const NODE_BYTES: u64 = 2 * size_of::<PlantNode>() as u64;
 
+    /// Bytes of a node while parts become a plant and that one skeleton: in both, and in the map that finds where parts meet.
+    pub const WHOLE_BYTES: u64 =
+        (size_of::<PlantNode>() + size_of::<SkeletonNode>() + 2 * size_of::<([u64; 3], u32)>()) as u64;
+
     /// Bytes of the plant, and of the skeletons that it is split into.
     #[must_use]
     pub fn bytes_to_split(&self) -> usize {

@@ -298,7 +298,7 @@ fn detail_is_below_the_pixel() {
         let cones: Vec<_> = world.objects.iter().flat_map(|object| &object.3).filter_map(cone).collect();
         // Pixels of a unit at unit depth: the angle is across the shorter side.
         let pixels = 0.5 * world.format[1] / libm::tan(world.fov.to_radians() * 0.5);
-        for ball in model.objects.iter().flat_map(|object| &object.body.limbs().unwrap().balls).step_by(16) {
+        for ball in model.objects.iter().flat_map(|object| &object.body.limbs().unwrap().balls).step_by(96) {
             let depth = point(&world.camera, ball.centre.to_array())[2];
             let strays = cones.iter().map(|&(a, ra, b, rb)| {
                 let along = ((ball.centre - a).dot(b - a) / (b - a).length_squared().max(1e-12)).clamp(0.0, 1.0);

@@ -108,8 +108,8 @@ impl Colonise {
         Ok(points)
     }
 
-    /// Bytes of a plant with so many starts. A limb is about as long as the shape is wide for every few points; the trunk is
-    /// as long as the farthest start is from the shape.
+    /// Bytes of a plant with so many starts. From one point that is reached to the next a limb grows as far as they are apart, or as
+    /// points are reached from, but no farther than they draw; the trunk is as long as the farthest start is from the shape.
     fn bytes(&self, step: &Step, starts: usize) -> u64 {
         let bounds = self.inside.bounds();
         let away = match &step.source {
@@ -118,7 +118,10 @@ impl Colonise {
             }
             _ => 0.0,
         };
-        let limbs = (bounds.size().max_element() + away + f64::from(self.points) * self.influence) / self.step;
+        let size = bounds.size();
+        let apart = libm::cbrt(size.element_product() / f64::from(self.points));
+        let each = apart.max(self.kill).min(self.influence);
+        let limbs = (size.max_element() + away + f64::from(self.points) * each) / self.step;
         let nodes = (limbs + starts as f64).min(MOST_NODES as f64);
         nodes as u64 * NODE_BYTES * u64::from(step.parts()) + u64::from(self.points) * POINT_BYTES
     }

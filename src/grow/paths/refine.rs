@@ -15,6 +15,8 @@ use crate::math::{DVec3, Progress};
 use crate::plan::{Goal, plan};
 use crate::skeleton::{Path, Skeleton};
 
+/// A round that plans among more nodes than this is refused: it would take a minute and more.
+const MOST_REFINED: u64 = 1 << 27;
 /// A path is refined in pieces of so many coarse nodes, so that the graphs are small and temporary.
 const PIECE: usize = 32;
 /// Nodes of the finer lattice from the root's side, with the cost from the first.
@@ -98,6 +100,7 @@ impl Round<'_> {
     /// The finer skeleton, and marks of the lattices that it lies in.
     fn apply(&self, coarse: &Skeleton, scale: f64) -> Result<(Skeleton, Vec<Mark>), GrowError> {
         let chains = chains(coarse);
+        self.check_size(&chains, coarse)?;
         let refined: Result<Vec<Vec<Piece>>, GrowError> =
             chains.par_iter().map(|chain| self.pieces(chain, coarse, scale)).collect();
 
@@ -153,20 +156,47 @@ impl Round<'_> {
         p.to_array().map(|x| libm::round(x / self.spacing) as i32)
     }
 
-    /// The least-cost way from the first of `points` to the last within sublattices around all of them; beside each is
-    /// its cost on the coarse way.
-    fn piece(&self, points: &[(DVec3, f64)]) -> Result<Piece, GrowError> {
-        let nodes: Vec<[i32; 3]> = points.iter().map(|&(p, _)| self.at(p)).collect();
+    /// How far sublattices reach around a node, in nodes of theirs.
+    fn reach(&self) -> [i32; 3] {
         let is_plane = self.space.neighbours.dimensions() == 2;
         let reach = (self.refine.reach * self.refine.ratio) as i32;
-        let reach = [reach, reach, if is_plane { 0 } else { reach }];
+        [reach, reach, if is_plane { 0 } else { reach }]
+    }
+
+    /// The box of the sublattices around `nodes`.
+    fn window(&self, nodes: &[[i32; 3]]) -> Window {
+        let reach = self.reach();
         let span = |axis: usize| {
             let low = nodes.iter().map(|n| n[axis]).min().unwrap_or(0) - reach[axis];
             let high = nodes.iter().map(|n| n[axis]).max().unwrap_or(0) + reach[axis];
             (low, (high - low + 1) as u32)
         };
         let spans = [0, 1, 2].map(span);
-        let window = Window { spacing: self.spacing, origin: spans.map(|s| s.0), size: spans.map(|s| s.1) };
+        Window { spacing: self.spacing, origin: spans.map(|s| s.0), size: spans.map(|s| s.1) }
+    }
+
+    /// Refuses a round whose boxes have too many nodes in all.
+    fn check_size(&self, chains: &[Vec<u32>], coarse: &Skeleton) -> Result<(), GrowError> {
+        let mut count = 0;
+        for chain in chains {
+            for start in (0..chain.len() - 1).step_by(PIECE) {
+                let piece = &chain[start..=(start + PIECE).min(chain.len() - 1)];
+                let nodes: Vec<[i32; 3]> = piece.iter().map(|&i| self.at(coarse.nodes[i as usize].position)).collect();
+                count += self.window(&nodes).nodes();
+            }
+        }
+        if count > MOST_REFINED {
+            let problem = Problem::TooRefined { round: self.round, count, most: MOST_REFINED };
+            return Err(self.step.error(Key::Refine, problem));
+        }
+        Ok(())
+    }
+
+    /// The least-cost way from the first of `points` to the last within sublattices around all of them; beside each is
+    /// its cost on the coarse way.
+    fn piece(&self, points: &[(DVec3, f64)]) -> Result<Piece, GrowError> {
+        let nodes: Vec<[i32; 3]> = points.iter().map(|&(p, _)| self.at(p)).collect();
+        let (window, reach) = (self.window(&nodes), self.reach());
         let within = |n: [i32; 3]| [0, 1, 2].map(|i| (n[i] - window.origin[i]) as u32);
         let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
 
