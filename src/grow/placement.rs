@@ -8,6 +8,9 @@ use super::spec::{EndpointSpec, NearSpec};
 use crate::geom::Shape;
 use crate::math::{DVec3, PerRound};
 
+/// What is said where endpoints are placed in several ways, or in none.
+const ONE_WAY: &str = "endpoints need exactly one of `count` (at random), `at` (a list), `through` (lists), `sketch` or `strokes` (a file) and `grammar` (an L-system)";
+
 /// The placement of the set at `key`, whose random stream is `own` unless it has a name; `rounds` are those of a repeated
 /// step. What is wrong is noted.
 pub(super) fn placement(
@@ -25,8 +28,11 @@ pub(super) fn placement(
         return None;
     }
     let drawn = spec.sketch.as_ref().map(|file| (file, false)).or(spec.strokes.as_ref().map(|file| (file, true)));
-    let is_drawn_twice = spec.sketch.is_some() && spec.strokes.is_some();
-    match (&spec.count, &spec.at, drawn.filter(|_| !is_drawn_twice), &spec.through, &spec.grammar) {
+    if spec.sketch.is_some() && spec.strokes.is_some() {
+        lookup.wrong(key, ONE_WAY.to_owned());
+        return None;
+    }
+    match (&spec.count, &spec.at, drawn, &spec.through, &spec.grammar) {
         (Some(count), None, None, None, None) => random(key, own, spec, count, space, rounds, lookup),
         (None, Some(points), None, None, None) => {
             if points.is_empty() {
@@ -44,26 +50,30 @@ pub(super) fn placement(
             let ends = grammar.endpoints(space?.up() == 1);
             note(lookup, &format!("{key}.grammar"), ends).map(Placement::At)
         }
-        (None, None, Some((file, is_followed)), None, None) => {
-            let space = space?;
-            let frame = space.shape().bounds();
-            let own = if is_followed { "strokes" } else { "sketch" };
-            let (lines, points) = lookup.sketch(&format!("{key}.{own}"), file, frame, space.up())?;
-            let raise = |p: DVec3| if space.up() == 1 { p } else { DVec3::new(p.x, frame.centre().y, p.y) };
-            if !is_followed {
-                return Some(Placement::At(points.into_iter().map(raise).collect()));
-            }
-            let stops =
-                |line: Vec<DVec3>| thinned(&line.into_iter().map(raise).collect::<Vec<_>>(), 2.0 * space.spacing());
-            // A point alone is no stroke.
-            Some(Placement::Through(lines.into_iter().filter(|line| line.len() > 1).map(stops).collect()))
-        }
+        (None, None, Some((file, is_followed)), None, None) => sketched(key, file, is_followed, space?, lookup),
         _ => {
-            let message = "endpoints need exactly one of `count` (at random), `at` (a list), `through` (lists), `sketch` or `strokes` (a file) and `grammar` (an L-system)";
-            lookup.wrong(key, message.to_owned());
+            lookup.wrong(key, ONE_WAY.to_owned());
             None
         }
     }
+}
+
+/// Endpoints of a sketch: the ends of its strokes, which paths follow if `is_followed`, and otherwise its points too.
+fn sketched(key: &str, file: &str, is_followed: bool, space: &Space, lookup: &mut dyn Lookup) -> Option<Placement> {
+    let frame = space.shape().bounds();
+    let place = format!("{key}.{}", if is_followed { "strokes" } else { "sketch" });
+    let (lines, points) = lookup.sketch(&place, file, frame, space.up())?;
+    let raise = |p: DVec3| if space.up() == 1 { p } else { DVec3::new(p.x, frame.centre().y, p.y) };
+    if !is_followed {
+        return Some(Placement::At(points.into_iter().map(raise).collect()));
+    }
+    let stops = |line: Vec<DVec3>| thinned(&line.into_iter().map(raise).collect::<Vec<_>>(), 2.0 * space.spacing());
+    // A point alone is no stroke.
+    let strokes: Vec<Vec<DVec3>> = lines.into_iter().filter(|line| line.len() > 1).map(stops).collect();
+    if strokes.is_empty() {
+        lookup.wrong(&place, format!("`{file}` has points, but no strokes: take them by `sketch`"));
+    }
+    Some(Placement::Through(strokes))
 }
 
 /// Points of a line that are `apart` from the one before, and its last.

@@ -35,7 +35,6 @@ const LONG: &[(&str, &str)] = &[
     ("cli/strike.rs::run", "photograph by photograph: read, grow, shine, write"),
     ("grow/baselines/dbm.rs::grow_cluster", "the published loop, in its order"),
     ("grow/paths/grammar.rs::endpoints", "the turtle's alphabet, a row a letter"),
-    ("grow/paths/refine.rs::piece", "a corridor, its mask, its path: each made from the last"),
     ("grow/regions/labels.rs::finer", "a lattice, its mask, its costs: each made from the last"),
     ("grow/rounds/growth.rs::sprout", "a subgraph from its nodes to its limbs"),
     ("scene/findings.rs::of", "a row for each quantity"),

@@ -382,3 +382,19 @@ fn what_shows_its_construction_is_drawn() {
     assert_eq!(tones, 8, "edges have eight tones");
     fails(at, &["export", "papers/2008-fig01", "--to", "svg", "--show", "sectors"], 2, &["Yao graphs in the plane"]);
 }
+
+/// A sketch in JSON is strokes that paths follow, or points; what is wrong with it is told at its place.
+#[test]
+fn sketches_are_strokes_or_points() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    succeed_in(at, &["new", "drawn", "--like", "sketched-tree"]);
+    succeed_in(at, &["check", "drawn"]);
+    let both = "grow.limbs.to.strokes.sketch=\"assets/sketched-tree.json\"";
+    fails(at, &["check", "drawn", "--set", both], 2, &["exactly one of", "`strokes`"]);
+    let json = at.join("assets/sketched-tree.json");
+    fs::write(&json, r#"{ "size": [4, 4], "points": [[2, 1]] }"#).unwrap();
+    fails(at, &["check", "drawn"], 2, &["grow.limbs.to.strokes.strokes", "no strokes"]);
+    fs::write(&json, r#"{ "size": [4, 4], "strokes": [[[2, 1], [3]]] }"#).unwrap();
+    fails(at, &["check", "drawn"], 2, &["no sketch in JSON", "line 1 column"]);
+}
