@@ -142,7 +142,7 @@ pub enum Problem {
     Width(String),
     /// A round of refinement that plans among too many nodes.
     #[error(
-        "round {round} plans among {count} nodes, more than {most}: use fewer `times`, or a smaller `ratio` or `reach`"
+        "round {round} would plan among about {count} nodes, more than {most}: use fewer `times`, or a smaller `ratio` or `reach`"
     )]
     TooRefined {
         /// The round, from 1.

@@ -175,9 +175,10 @@ impl Round<'_> {
         Window { spacing: self.spacing, origin: spans.map(|s| s.0), size: spans.map(|s| s.1) }
     }
 
-    /// Refuses a round whose boxes have too many nodes in all.
+    /// Refuses rounds whose boxes have too many nodes in all: each has about `ratio` times those of the one before, since pieces
+    /// are of so many nodes.
     fn check_size(&self, chains: &[Vec<u32>], coarse: &Skeleton) -> Result<(), GrowError> {
-        let mut count = 0;
+        let mut count = 0_u64;
         for chain in chains {
             for start in (0..chain.len() - 1).step_by(PIECE) {
                 let piece = &chain[start..=(start + PIECE).min(chain.len() - 1)];
@@ -185,8 +186,11 @@ impl Round<'_> {
                 count += self.window(&nodes).nodes();
             }
         }
+        for _ in self.round..self.refine.times {
+            count = count.saturating_mul(self.refine.ratio.into());
+        }
         if count > MOST_REFINED {
-            let problem = Problem::TooRefined { round: self.round, count, most: MOST_REFINED };
+            let problem = Problem::TooRefined { round: self.refine.times, count, most: MOST_REFINED };
             return Err(self.step.error(Key::Refine, problem));
         }
         Ok(())
