@@ -32,9 +32,19 @@ pub fn report(path: &Path, jobs: &Jobs, job: &Job, scene: &Loaded, begun: Instan
     output::tell(path, details, console);
 }
 
-/// Options that say how rays are traced mean nothing where lines or light are drawn; `data` is asked of an EXR.
-fn refuse_tracing(args: &RenderArgs, data: bool, means: Means) -> Result<(), Failure> {
+/// What `scene` becomes a picture by; `data` is asked of an EXR.
+///
+/// # Errors
+/// Options that mean nothing there: marks where nothing is drawn, how rays are traced where lines or light are.
+pub fn checked_means(args: &RenderArgs, scene: &Loaded, data: bool) -> Result<Means, Failure> {
+    let means = means(args, scene);
     let is_schematic = means == Means::Schematic;
+    if !is_schematic && args.show.iter().any(|show| show.mark().is_some()) {
+        return Err(Failure::Usage("marks of the construction are drawn with --schematic".to_owned()));
+    }
+    if !is_schematic && means != Means::Glow {
+        return Ok(means);
+    }
     let given = [
         ("--samples", args.samples.is_some()),
         ("--crop", args.crop.is_some()),
@@ -50,7 +60,7 @@ fn refuse_tracing(args: &RenderArgs, data: bool, means: Means) -> Result<(), Fai
     };
     match given.iter().find(|(_, is_given)| *is_given) {
         Some((option, _)) => Err(Failure::Usage(format!("{option} is for scenes that are traced; {why}"))),
-        None => Ok(()),
+        None => Ok(means),
     }
 }
 
@@ -66,15 +76,8 @@ pub fn draw(
     console: &Console,
     progress: &Progress,
 ) -> Result<Drawn, Failure> {
-    let means = means(args, scene);
     // What is wrong with the call is said before long work.
-    if means != Means::Schematic && args.show.iter().any(|show| show.mark().is_some()) {
-        return Err(Failure::Usage("marks of the construction are drawn with --schematic".to_owned()));
-    }
-    if matches!(means, Means::Schematic | Means::Glow) {
-        refuse_tracing(args, data, means)?;
-    }
-    match means {
+    match checked_means(args, scene, data)? {
         Means::Schematic => draw_schematic(args, jobs, scene, console, progress),
         Means::Glow => {
             let model = jobs.model(scene, &[], console, progress)?;

@@ -53,15 +53,16 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
         lap("claims");
         let model = scene::model(&scene, &grown, scene.recipe.size, &jobs.memory, &progress)?;
         lap("model");
-        let taken = model.bytes() as u64 + grown.iter().map(|step| step.bytes() as u64).sum::<u64>();
-        let plants = whole_plants(&scene.recipe, &grown, &jobs.memory.beside(taken))?;
         let mut count = Count::default();
         Pov::new(&model, &Templates::default(), "scene", scene.recipe.size, &job.origin(scene.recipe.seed, "info"))
             .write_inc(&mut count)
             .map_err(|e| Failure::Usage(e.to_string()))?;
         lap("export");
+        let taken = model.bytes() as u64 + grown.iter().map(|step| step.bytes() as u64).sum::<u64>();
+        let plants = whole_plants(&scene.recipe, &grown, &jobs.memory.beside(taken))?;
 
-        let all = json!({
+        if console.json {
+            console.result(&json!({
             "scene": job.name(),
             "title": scene.recipe.title,
             "seed": scene.recipe.seed,
@@ -75,9 +76,7 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
             "steps": grown.iter().map(step).collect::<Vec<_>>(),
             "plants": plants.iter().map(|(plant, _)| plant).collect::<Vec<_>>(),
             "claims": claims,
-        });
-        if console.json {
-            console.result(&all);
+        }));
             continue;
         }
         console.line(&format!("{}: {} (seed {})", job.name(), scene.recipe.title, scene.recipe.seed));

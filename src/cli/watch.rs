@@ -12,11 +12,11 @@ use notify::{RecommendedWatcher, RecursiveMode, Watcher};
 use super::args::RenderArgs;
 use super::choices::Show;
 use super::console::Console;
-use super::draw::{draw, report};
+use super::draw::{checked_means, draw, report};
 use super::error::Failure;
 use super::jobs::Jobs;
 use super::output::is_stdout;
-use super::preview::{Drawn, Means, is_exr, means, trace, view};
+use super::preview::{Drawn, Means, is_exr, trace, view};
 use super::{pattern, shown, terminal};
 use crate::math::Progress;
 use crate::trace::RenderSettings;
@@ -179,7 +179,7 @@ fn once(
         report(output, &jobs, job, &scene, begun, console);
         Ok(())
     };
-    if means(args, &scene) != Means::Preview {
+    if checked_means(args, &scene, is_exr(output))? != Means::Preview {
         return finish(draw(args, &jobs, job, &scene, is_exr(output), threads, console, progress)?);
     }
     let fine = view(args, scene.recipe.size, is_exr(output), &jobs.memory)?;

@@ -150,7 +150,8 @@ fn png_channels(bytes: &[u8]) -> Option<([u32; 2], Vec<Channel>)> {
         png::ColorType::Rgba => ([0, 1, 2], Some(3)),
         png::ColorType::Indexed => return None,
     };
-    let mut values: [Vec<f32>; 4] = std::array::from_fn(|_| Vec::with_capacity(pixels as usize));
+    let mut values: [Vec<f32>; 4] = Default::default();
+    values.iter_mut().try_for_each(|channel| channel.try_reserve_exact(pixels as usize)).ok()?;
     while let Some(row) = reader.next_row().ok()? {
         for pixel in row.data().chunks_exact(if is_wide { 2 * samples } else { samples }) {
             let sample = |i: usize| match is_wide {

@@ -1,9 +1,11 @@
 //! The command from outside: outputs, exit codes, and one clear error for every bad input.
 
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::Path;
+use std::process::{Command, Stdio};
 
-use crate::support::{run_in, scene_names, succeed_in, text};
+use crate::support::{lichtenberg, run_in, scene_names, succeed_in, text};
 
 /// A scene that reads no file.
 pub const TWIG: &str = r#"title = "Twig"
@@ -369,6 +371,19 @@ fn what_shows_its_construction_is_drawn() {
     assert_ne!(drawn, picture(&["nodes.png", "--show", "nodes"]));
     fails(at, &[&small[..], &["x.png", "--samples", "4"]].concat(), 2, &["--samples", "--look"]);
     fails(at, &[&small[..], &["x.exr"]].concat(), 2, &["EXR", "--look"]);
+    // Also where a file is watched, which its next change may mend: what is traced has no marks.
+    succeed_in(at, &["new", "mine", "--like", "cactus"]);
+    let mut child = lichtenberg()
+        .current_dir(at)
+        .args(["render", "mine.toml", "--watch", "--show", "nodes"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let told = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
+    assert!(told.into_iter().any(|line| line.contains("--schematic")), "it ends without a word");
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(!at.join("mine.png").exists());
     // What the marks are.
     let svg = |scene: &str, marks: &str| {
         succeed_in(at, &["export", scene, "--to", "svg", "--name", "marks", "--show", marks, "--quiet"]);

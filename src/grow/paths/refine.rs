@@ -86,15 +86,13 @@ struct Round<'a> {
 impl Round<'_> {
     /// The pieces of a chain of coarse nodes, planned again.
     fn pieces(&self, chain: &[u32], coarse: &Skeleton, scale: f64) -> Result<Vec<Piece>, GrowError> {
-        let mut pieces = Vec::new();
-        for start in (0..chain.len() - 1).step_by(PIECE) {
-            let end = (start + PIECE).min(chain.len() - 1);
-            let nodes = chain[start..=end].iter().map(|&i| &coarse.nodes[i as usize]);
-            let first = coarse.nodes[chain[start] as usize].cost;
+        let pieces = cut(chain).map(|piece| {
+            let first = coarse.nodes[piece[0] as usize].cost;
+            let nodes = piece.iter().map(|&i| &coarse.nodes[i as usize]);
             let points = nodes.map(|n| (n.position, (n.cost - first) / scale));
-            pieces.push(self.piece(&points.collect::<Vec<_>>())?);
-        }
-        Ok(pieces)
+            self.piece(&points.collect::<Vec<_>>())
+        });
+        pieces.collect()
     }
 
     /// The finer skeleton, and marks of the lattices that it lies in.
@@ -178,14 +176,11 @@ impl Round<'_> {
     /// Refuses rounds whose boxes have too many nodes in all: each has about `ratio` times those of the one before, since pieces
     /// are of so many nodes.
     fn check_size(&self, chains: &[Vec<u32>], coarse: &Skeleton) -> Result<(), GrowError> {
-        let mut count = 0_u64;
-        for chain in chains {
-            for start in (0..chain.len() - 1).step_by(PIECE) {
-                let piece = &chain[start..=(start + PIECE).min(chain.len() - 1)];
-                let nodes: Vec<[i32; 3]> = piece.iter().map(|&i| self.at(coarse.nodes[i as usize].position)).collect();
-                count += self.window(&nodes).nodes();
-            }
-        }
+        let nodes_of = |piece: &[u32]| {
+            let nodes: Vec<[i32; 3]> = piece.iter().map(|&i| self.at(coarse.nodes[i as usize].position)).collect();
+            self.window(&nodes).nodes()
+        };
+        let mut count: u64 = chains.iter().flat_map(|chain| cut(chain)).map(nodes_of).sum();
         for _ in self.round..self.refine.times {
             count = count.saturating_mul(self.refine.ratio.into());
         }
@@ -252,6 +247,11 @@ impl Round<'_> {
         way.reverse();
         Ok(Piece { way, marks })
     }
+}
+
+/// The pieces of a chain; each begins with the last node of the one before.
+fn cut(chain: &[u32]) -> impl Iterator<Item = &[u32]> {
+    (0..chain.len() - 1).step_by(PIECE).map(|start| &chain[start..=(start + PIECE).min(chain.len() - 1)])
 }
 
 /// Ends a way, told from its end, where it first crosses a diagonal edge that is there already: it joins that.
