@@ -18,7 +18,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
 LARGE = [(4, 2048, 3, 1), (8, 2048, 3, 1), (6, 80, 3, 1), (18, 80, 3, 1), (26, 80, 3, 1), (6, 256, 3, 1), (6, 256, 3, 2)]
-SMALL = [(4, 200, 3, 1), (8, 200, 1, 1), (6, 40, 3, 1), (18, 30, 2, 1), (26, 30, 3, 1), (6, 145, 3, 2)]
+SMALL = [(4, 200, 3, 1), (8, 200, 1, 1), (6, 40, 3, 1), (18, 30, 2, 1), (26, 30, 3, 1), (6, 101, 3, 2)]
 
 
 def compare(neighbours, side, alpha, threads, command):

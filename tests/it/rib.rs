@@ -137,7 +137,7 @@ fn check_camera(model: &Model, world: &World, scene: &str) {
     }
     assert!(seen > 0, "{scene}: the camera sees nothing");
     // Nothing of sky or ground reaches behind the camera.
-    for (name, .., primitives) in world.objects.iter().filter(|(name, ..)| name == "sky" || name == "ground") {
+    for (name, .., primitives) in world.objects.iter().filter(|(name, ..)| SHEETS.contains(&name.as_str())) {
         for primitive in primitives {
             let Primitive::Polygons { points, .. } = primitive else { panic!("{name} is no sheet") };
             let is_front = |p: &[f64; 3]| {
@@ -149,12 +149,15 @@ fn check_camera(model: &Model, world: &World, scene: &str) {
     }
 }
 
+/// What stands around the objects.
+const SHEETS: [&str; 3] = ["sky", "haze", "ground"];
+
 /// What a renderer would rebuild from the model's files is what the model says.
 pub fn reads_back(model: &Model, name: &str) {
     let (scene, archive) = exported(model, RibOptions { shadows: RibShadows::None, ..RibOptions::default() });
     let world = read(&scene, &archive);
     check_camera(model, &world, name);
-    let objects: Vec<_> = world.objects.iter().filter(|(found, ..)| found != "sky" && found != "ground").collect();
+    let objects: Vec<_> = world.objects.iter().filter(|(found, ..)| !SHEETS.contains(&found.as_str())).collect();
     assert_eq!(objects.len(), model.objects.len(), "{name}");
     for (object, (.., surface, colour, primitives)) in model.objects.iter().zip(objects) {
         check_object(object, primitives, name);
@@ -198,7 +201,7 @@ fn shadows_and_displacement_are_told_apart() {
     let world = read(&scene, &archive);
     let thorns = model.objects.iter().filter(|object| object.body.limbs().is_some_and(|limbs| limbs.is_thorns)).count();
     assert!(thorns > 0);
-    assert_eq!(world.objects.iter().filter(|o| o.0 != "sky" && o.0 != "ground").count(), model.objects.len() - thorns);
+    assert_eq!(world.objects.iter().filter(|o| !SHEETS.contains(&o.0.as_str())).count(), model.objects.len() - thorns);
     let (scene, _) = exported(&model, RibOptions { shadows: RibShadows::Rays, ..RibOptions::default() });
     assert!(scene.contains("\"raydistant\"") && scene.contains("\"int transmission\" [1]"));
 }
