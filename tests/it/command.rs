@@ -192,7 +192,7 @@ fn a_full_disk_leaves_nothing() {
     // A limit on file size stands for the full disk; the shell ignores its signal, so that writing fails.
     let script =
         format!("trap '' XFSZ; ulimit -f 8; exec {} export elm --to pov -o out", env!("CARGO_BIN_EXE_lichtenberg"));
-    let output = std::process::Command::new("bash").current_dir(folder.path()).args(["-c", &script]).output().unwrap();
+    let output = Command::new("bash").current_dir(folder.path()).args(["-c", &script]).output().unwrap();
     assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
     assert!(text(&output.stderr).contains("cannot write"));
     assert_eq!(fs::read_dir(folder.path().join("out")).unwrap().count(), 0);
