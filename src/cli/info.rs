@@ -51,6 +51,9 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
             if console.json { scene::check_claims(&scene, &grown, &jobs.memory, &progress)? } else { Vec::new() };
         console.done();
         lap("claims");
+        // What threads free while they grow lies in their own rooms: it is not to be had again.
+        let plants = whole_plants(&scene.recipe, &grown, &jobs.memory.beside(jobs.memory.most()))?;
+        lap("plants");
         let model = scene::model(&scene, &grown, scene.recipe.size, &jobs.memory, &progress)?;
         lap("model");
         let mut count = Count::default();
@@ -58,8 +61,6 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
             .write_inc(&mut count)
             .map_err(|e| Failure::Usage(e.to_string()))?;
         lap("export");
-        let taken = model.bytes() as u64 + grown.iter().map(|step| step.bytes() as u64).sum::<u64>();
-        let plants = whole_plants(&scene.recipe, &grown, &jobs.memory.beside(taken))?;
 
         if console.json {
             console.result(&json!({

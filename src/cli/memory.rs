@@ -44,7 +44,7 @@ fn default_limit() -> u64 {
 }
 
 /// What the program takes for itself, whatever it makes.
-const OWN: u64 = 22 << 20;
+const OWN: u64 = 18 << 20;
 /// How often we look how much memory we take.
 const POLL: Duration = Duration::from_millis(20);
 

@@ -53,9 +53,8 @@ impl Plant {
     /// Bytes of a node while the plant takes its form: here, and in a copy that has it.
     pub const NODE_BYTES: u64 = 2 * size_of::<PlantNode>() as u64;
 
-    /// Bytes of a node while parts become a plant and that one skeleton: in both, and in the map that finds where parts meet.
-    pub const WHOLE_BYTES: u64 =
-        (size_of::<PlantNode>() + size_of::<SkeletonNode>() + 2 * size_of::<([u64; 3], u32)>()) as u64;
+    /// Bytes of a node while parts become a plant and that one skeleton: in both.
+    pub const WHOLE_BYTES: u64 = (size_of::<PlantNode>() + size_of::<SkeletonNode>()) as u64;
 
     /// Bytes of the plant, and of the skeletons that it is split into.
     #[must_use]
@@ -68,7 +67,12 @@ impl Plant {
     /// Joins the parts: a root of a later part that coincides with a node of an earlier one is that node.
     #[must_use]
     pub fn new(parts: &[PlantPart<'_>]) -> Self {
-        let mut plant = Self { nodes: Vec::new(), ends: Vec::new(), parts: parts.len() };
+        let count = |of: fn(&Skeleton) -> usize| parts.iter().map(|part| of(part.skeleton)).sum();
+        let mut plant = Self {
+            nodes: Vec::with_capacity(count(|skeleton| skeleton.nodes.len())),
+            ends: Vec::with_capacity(count(|skeleton| skeleton.paths.len())),
+            parts: parts.len(),
+        };
         let mut known: HashMap<[u64; 3], u32> = HashMap::new();
         for (index, part) in (0..).zip(parts) {
             let mut renamed: Vec<u32> = Vec::with_capacity(part.skeleton.nodes.len());
@@ -83,7 +87,10 @@ impl Plant {
                 let parent = node.parent.map(|p| renamed[p as usize]);
                 plant.nodes.push(PlantNode { node: SkeletonNode { parent, ..*node }, part: index, reach: 0.0 });
                 renamed.push(at);
-                fresh.push((key, at));
+                // None grows from the last, which has most nodes.
+                if index as usize + 1 < parts.len() {
+                    fresh.push((key, at));
+                }
             }
             for (key, at) in fresh {
                 known.entry(key).or_insert(at);
