@@ -97,16 +97,19 @@ fn add(
     Ok(())
 }
 
-/// The marks of all steps in world space. They move with the object that shows their step; those of steps that no object
-/// shows stay where they are.
+/// The marks of all steps in world space. They are drawn with each object that shows their step, if it wants them; those of steps
+/// that no object shows stay where they are.
 fn marks(recipe: &Recipe, grown: &[Grown]) -> Vec<Mark> {
     let mut marks = Vec::new();
     for (i, step) in grown.iter().enumerate() {
-        let offset = recipe.objects.iter().find(|o| o.steps.contains(&i)).map_or(DVec3::ZERO, |o| o.at);
-        marks.extend(step.marks.iter().map(|mark| Mark {
-            line: mark.line.iter().map(|&p| to_world(p + offset, recipe.is_flat)).collect(),
-            ..*mark
-        }));
+        let showing: Vec<_> = recipe.objects.iter().filter(|object| object.steps.contains(&i)).collect();
+        let nowhere = showing.is_empty().then_some(DVec3::ZERO);
+        for offset in showing.iter().filter(|object| object.marks).map(|object| object.at).chain(nowhere) {
+            marks.extend(step.marks.iter().map(|mark| Mark {
+                line: mark.line.iter().map(|&p| to_world(p + offset, recipe.is_flat)).collect(),
+                ..*mark
+            }));
+        }
     }
     marks
 }

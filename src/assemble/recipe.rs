@@ -177,6 +177,8 @@ pub struct ObjectRecipe {
     pub until: f64,
     /// Does it cast shadows?
     pub shadow: bool,
+    /// Are the marks of its steps drawn with it?
+    pub marks: bool,
     /// Lights along it.
     pub lights: Option<LightsSpec>,
 }
@@ -200,6 +202,7 @@ impl ObjectRecipe {
             glow: None,
             until: 1.0,
             shadow: true,
+            marks: true,
             lights: None,
         }
     }

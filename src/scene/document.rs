@@ -134,6 +134,9 @@ pub struct ObjectSpec {
     /// Does it cast shadows? What shines from within, by lights along it, should not.
     #[serde(default = "yes")]
     pub shadow: bool,
+    /// Where the construction is drawn: are the marks of its steps drawn with it?
+    #[serde(default = "yes")]
+    pub marks: bool,
     /// Lights along its core, in space.
     #[serde(default)]
     pub lights: Option<LightsSpec>,

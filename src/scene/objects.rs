@@ -68,6 +68,7 @@ impl Resolver<'_> {
             glow: spec.glow,
             until: spec.until,
             shadow: spec.shadow,
+            marks: spec.marks,
             lights: spec.lights,
             ..ObjectRecipe::new(name, steps?)
         })
