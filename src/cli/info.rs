@@ -64,20 +64,20 @@ pub fn run(args: &InfoArgs, console: &Console) -> Result<(), Failure> {
 
         if console.json {
             console.result(&json!({
-            "scene": job.name(),
-            "title": scene.recipe.title,
-            "seed": scene.recipe.seed,
-            "nodes": grown.iter().map(|s| s.nodes).sum::<u64>(),
-            "edges": grown.iter().map(|s| s.edges).sum::<u64>(),
-            "endpoints": grown.iter().map(|s| s.skeleton.paths.len()).sum::<usize>(),
-            "primitives": model.primitives(),
-            "bytes": { "needed": jobs.memory.most(), "pov": count.0 },
-            "memory": memory::told(&jobs.memory),
-            "seconds": seconds.iter().map(|(stage, s)| ((*stage).to_owned(), json!(s))).collect::<serde_json::Map<_, _>>(),
-            "steps": grown.iter().map(step).collect::<Vec<_>>(),
-            "plants": plants.iter().map(|(plant, _)| plant).collect::<Vec<_>>(),
-            "claims": claims,
-        }));
+                "scene": job.name(),
+                "title": scene.recipe.title,
+                "seed": scene.recipe.seed,
+                "nodes": grown.iter().map(|s| s.nodes).sum::<u64>(),
+                "edges": grown.iter().map(|s| s.edges).sum::<u64>(),
+                "endpoints": grown.iter().map(|s| s.skeleton.paths.len()).sum::<usize>(),
+                "primitives": model.primitives(),
+                "bytes": { "needed": jobs.memory.most(), "pov": count.0 },
+                "memory": memory::told(&jobs.memory),
+                "seconds": seconds.iter().map(|(stage, s)| ((*stage).to_owned(), json!(s))).collect::<serde_json::Map<_, _>>(),
+                "steps": grown.iter().map(step).collect::<Vec<_>>(),
+                "plants": plants.iter().map(|(plant, _)| plant).collect::<Vec<_>>(),
+                "claims": claims,
+            }));
             continue;
         }
         console.line(&format!("{}: {} (seed {})", job.name(), scene.recipe.title, scene.recipe.seed));
