@@ -1,8 +1,8 @@
 //! `compare`: have pictures changed?
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
-use std::io::Write;
+use std::fs::{self, File};
+use std::io::{BufReader, Write};
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
@@ -314,16 +314,16 @@ fn compare(
 
 /// A picture and whether it is one of high dynamic range; `None` where there is no file.
 fn read(path: &Path) -> Option<Result<(Layers, bool), String>> {
-    let bytes = match fs::read(path) {
-        Ok(bytes) => bytes,
+    let source = match File::open(path) {
+        Ok(file) => BufReader::new(file),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return None,
         Err(error) => return Some(Err(format!("cannot read {}: {error}", shown::path(path)))),
     };
     let is_exr = is_exr(path);
     let layers = if is_exr {
-        decode_exr(&bytes).map_err(|e| e.to_string())
+        decode_exr(source).map_err(|e| e.to_string())
     } else {
-        decode_linear(&bytes).map_err(|e| e.to_string())
+        decode_linear(source).map_err(|e| e.to_string())
     };
     Some(layers.map(|layers| (layers, is_exr)).map_err(|error| format!("cannot read {}: {error}", shown::path(path))))
 }

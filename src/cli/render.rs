@@ -1,6 +1,7 @@
 //! `render`: pictures of scenes.
 
-use std::fs;
+use std::fs::{self, File};
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -116,11 +117,11 @@ fn is_whole(path: &Path) -> bool {
 
 /// A picture that is there already, as a screen shows it.
 fn read_screen(path: &Path) -> Result<Rgba, String> {
-    let bytes = fs::read(path).map_err(|e| e.to_string())?;
     if !is_exr(path) {
-        return decode_png(&bytes).map_err(|e| e.to_string());
+        return decode_png(&fs::read(path).map_err(|e| e.to_string())?).map_err(|e| e.to_string());
     }
-    to_screen(&decode_exr(&bytes).map_err(|e| e.to_string())?, true)
+    let file = File::open(path).map_err(|e| e.to_string())?;
+    to_screen(&decode_exr(BufReader::new(file)).map_err(|e| e.to_string())?, true)
         .ok_or_else(|| "it has no channels R, G and B".to_owned())
 }
 

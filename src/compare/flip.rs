@@ -86,30 +86,25 @@ impl GreyPlane {
     /// Separable convolution with `across` along rows and `down` along columns, both centred; clamped to the edge.
     fn convolve(&self, across: &[f64], down: &[f64]) -> Self {
         let (width, height) = (self.width, self.values.len() / self.width);
-        let near = |at: usize, i: usize, half: usize, most: usize| (at + i).saturating_sub(half).min(most - 1);
-        let pass = |values: &[f64], kernel: &[f64], is_row: bool| -> Vec<f64> {
-            let half = kernel.len() / 2;
-            (0..height)
-                .into_par_iter()
-                .flat_map_iter(|y| {
-                    (0..width).map(move |x| {
-                        kernel
-                            .iter()
-                            .enumerate()
-                            .map(|(i, k)| {
-                                let at = if is_row {
-                                    y * width + near(x, i, half, width)
-                                } else {
-                                    near(y, i, half, height) * width + x
-                                };
-                                k * values[at]
-                            })
-                            .sum()
-                    })
-                })
-                .collect()
-        };
-        Self { width, values: pass(&pass(&self.values, across, true), down, false) }
+        let near = |at: usize, half: usize, most: usize| at.saturating_sub(half).min(most - 1);
+        let mut rows = vec![0.0; self.values.len()];
+        rows.par_chunks_mut(width).zip(self.values.par_chunks(width)).for_each(|(row, values)| {
+            let half = across.len() / 2;
+            let padded: Vec<f64> = (0..width + across.len() - 1).map(|x| values[near(x, half, width)]).collect();
+            weighted_sum(across, |i| &padded[i..], row);
+        });
+        let mut values = vec![0.0; rows.len()];
+        values.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+            weighted_sum(down, |i| &rows[near(y + i, down.len() / 2, height) * width..], row);
+        });
+        Self { width, values }
+    }
+}
+
+/// Adds `row(i)` to `sum` for each weight i.
+fn weighted_sum<'a>(weights: &[f64], row: impl Fn(usize) -> &'a [f64], sum: &mut [f64]) {
+    for (i, weight) in weights.iter().enumerate() {
+        sum.iter_mut().zip(row(i)).for_each(|(sum, value)| *sum += weight * value);
     }
 }
 
@@ -148,7 +143,7 @@ fn feature_size(ppd: f64) -> (f64, i64) {
     (sd, libm::ceil(3.0 * sd) as i64)
 }
 
-/// Rows beyond a pixel that its FLIP depends on.
+/// Pixels around one that its FLIP depends on.
 fn reach(ppd: f64) -> usize {
     colour_radius(ppd).max(feature_size(ppd).1) as usize
 }
@@ -190,15 +185,13 @@ fn features(width: usize, pixels: &[Pixel], ppd: f64) -> Vec<[f64; 2]> {
 }
 
 /// LDR-FLIP of pixels in linear light from 0 to 1.
-fn ldr(width: usize, [expected, actual]: [&[[f32; 3]]; 2], ppd: f64) -> Vec<f32> {
-    let show = |pixels: &[[f32; 3]]| -> Vec<Pixel> {
-        pixels.par_iter().map(|p| opponent(p.map(|x| f64::from(x).clamp(0.0, 1.0)))).collect()
-    };
-    let (r, t) = (show(expected), show(actual));
-    let (colour_r, colour_t) = (perceived(width, &r, ppd), perceived(width, &t, ppd));
-    let (feature_r, feature_t) = (features(width, &r, ppd), features(width, &t, ppd));
+fn ldr(width: usize, pictures: [&[[f32; 3]]; 2], ppd: f64) -> Vec<f32> {
+    let [(colour_r, feature_r), (colour_t, feature_t)] = pictures.map(|pixels| {
+        let shown: Vec<Pixel> = pixels.par_iter().map(|p| opponent(p.map(|x| f64::from(x).clamp(0.0, 1.0)))).collect();
+        (perceived(width, &shown, ppd), features(width, &shown, ppd))
+    });
     let c_max = power(hyab(hunt([0.0, 1.0, 0.0]), hunt([0.0, 0.0, 1.0])), Q_C);
-    (0..expected.len())
+    (0..colour_r.len())
         .into_par_iter()
         .map(|i| {
             let c = power(hyab(colour_r[i], colour_t[i]), Q_C);
@@ -211,42 +204,59 @@ fn ldr(width: usize, [expected, actual]: [&[[f32; 3]]; 2], ppd: f64) -> Vec<f32>
         .collect()
 }
 
-/// Two pictures of one size, read row by row.
-pub struct Rows<'a> {
+/// A part of a picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Tile {
+    /// Columns.
+    pub x: Range<usize>,
+    /// Rows.
+    pub y: Range<usize>,
+}
+
+/// Two pictures of one size, read tile by tile.
+pub struct Tiles<'a> {
     /// Pixels in a row, and rows.
     pub size: [usize; 2],
-    /// The pixels of some rows in linear light, expected and actual.
-    pub read: &'a (dyn Fn(Range<usize>) -> [Vec<[f32; 3]>; 2] + Sync),
+    /// The pixels of a tile in linear light, row by row, expected and actual.
+    pub read: &'a (dyn Fn(&Tile) -> [Vec<[f32; 3]>; 2] + Sync),
 }
 
-/// Pixels that are worked on at once.
-const BAND: usize = 1 << 19;
-/// Bytes that one of them takes meanwhile.
+/// Pixels along a side of what is worked on at once.
+const SIDE: usize = 256;
+/// Bytes that a pixel of a tile takes meanwhile.
 const PIXEL_BYTES: u64 = 240;
 
-/// Bytes that FLIP of so many pixels takes at its peak besides the pictures: its map, and a band on its way.
+/// Bytes that FLIP of so many pixels takes at its peak besides the pictures: its map, and a tile on its way.
 pub(super) fn bytes_needed(pixels: u64) -> u64 {
-    pixels.saturating_mul(4).saturating_add(pixels.min(BAND as u64) * PIXEL_BYTES)
+    let side = (SIDE + 2 * reach(PIXELS_PER_DEGREE)) as u64;
+    pixels.saturating_mul(4).saturating_add(pixels.min(side * side) * PIXEL_BYTES)
 }
 
-impl Rows<'_> {
-    /// Bands of rows, of about so many `pixels`.
-    fn bands(&self, pixels: usize) -> impl Iterator<Item = Range<usize>> + use<> {
+impl Tiles<'_> {
+    /// The tiles of so many pixels a side.
+    fn tiles(&self, side: usize) -> impl Iterator<Item = Tile> + use<> {
         let [width, height] = self.size;
-        let rows = (pixels / width.max(1)).max(1);
-        (0..height.div_ceil(rows)).map(move |i| i * rows..((i + 1) * rows).min(height))
+        let part = move |i: usize, most: usize| i * side..((i + 1) * side).min(most);
+        let rows = (0..height.div_ceil(side)).map(move |i| part(i, height));
+        rows.flat_map(move |y| (0..width.div_ceil(side)).map(move |i| Tile { x: part(i, width), y: y.clone() }))
     }
 
-    /// What `flip` makes of all bands of so many `pixels`; it is given each with the rows around it that filters reach.
-    fn map(&self, pixels: usize, ppd: f64, flip: impl Fn([&[[f32; 3]]; 2]) -> Vec<f32>) -> Vec<f32> {
+    /// What `flip` makes of all tiles of so many pixels a `side`; it is given each with what filters reach around it, and the
+    /// pixels in a row of that.
+    fn map(&self, side: usize, ppd: f64, flip: impl Fn(usize, [&[[f32; 3]]; 2]) -> Vec<f32>) -> Vec<f32> {
         let [width, height] = self.size;
-        let mut map = Vec::with_capacity(width * height);
-        for band in self.bands(pixels) {
-            let around = band.start.saturating_sub(reach(ppd))..(band.end + reach(ppd)).min(height);
-            let [expected, actual] = (self.read)(around.clone());
-            let all = flip([&expected, &actual]);
-            let start = (band.start - around.start) * width;
-            map.extend_from_slice(&all[start..start + band.len() * width]);
+        let reach = reach(ppd);
+        let grown = |part: &Range<usize>, most: usize| part.start.saturating_sub(reach)..(part.end + reach).min(most);
+        let mut map = vec![0.0; width * height];
+        for tile in self.tiles(side) {
+            let around = Tile { x: grown(&tile.x, width), y: grown(&tile.y, height) };
+            let [expected, actual] = (self.read)(&around);
+            let values = flip(around.x.len(), [&expected, &actual]);
+            for y in tile.y {
+                let from = (y - around.y.start) * around.x.len() + tile.x.start - around.x.start;
+                let row = &values[from..from + tile.x.len()];
+                map[y * width..][tile.x.clone()].copy_from_slice(row);
+            }
         }
         map
     }
@@ -255,8 +265,8 @@ impl Rows<'_> {
 /// LDR-FLIP: the difference of each pixel in linear light, clamped to 0 to 1. `ppd` is the pixels per degree, by default
 /// [`PIXELS_PER_DEGREE`].
 #[must_use]
-pub fn flip_ldr(rows: &Rows<'_>, ppd: f64) -> Vec<f32> {
-    rows.map(BAND, ppd, |pixels| ldr(rows.size[0], pixels, ppd))
+pub fn flip_ldr(tiles: &Tiles<'_>, ppd: f64) -> Vec<f32> {
+    tiles.map(SIDE, ppd, |width, pixels| ldr(width, pixels, ppd))
 }
 
 /// The ACES tone mapping of HDR-FLIP, as a rational function (Narkowicz 2015).
@@ -268,9 +278,9 @@ fn aces(x: f64) -> f64 {
 /// HDR-FLIP: the maximum of LDR-FLIP over exposures, from that at which the brightest pixel of `expected` is mapped to 0.85 to that
 /// at which its median is (Andersson et al. 2021, section 3).
 #[must_use]
-pub fn flip_hdr(rows: &Rows<'_>, ppd: f64) -> Vec<f32> {
+pub fn flip_hdr(tiles: &Tiles<'_>, ppd: f64) -> Vec<f32> {
     let luminance = |visit: &mut dyn FnMut(f64)| {
-        for [expected, _] in rows.bands(BAND).map(rows.read) {
+        for [expected, _] in tiles.tiles(SIDE).map(|tile| (tiles.read)(&tile)) {
             expected.iter().map(|p| xyz(p.map(f64::from))[1]).filter(|y| y.is_finite()).for_each(&mut *visit);
         }
     };
@@ -282,14 +292,14 @@ pub fn flip_hdr(rows: &Rows<'_>, ppd: f64) -> Vec<f32> {
     let most = ranked(&luminance, |count| count.saturating_sub(1)).unwrap_or(1.0).max(median);
     let (start, stop) = (libm::log2(x_max / most), libm::log2(x_max / median));
     let count = libm::ceil(stop - start).clamp(2.0, 64.0);
-    rows.map(BAND, ppd, |pixels| {
+    tiles.map(SIDE, ppd, |width, pixels| {
         let mut flip = vec![0.0_f32; pixels[0].len()];
         for i in 0..count as u32 {
             let scale = libm::exp2(start + (stop - start) * f64::from(i) / (count - 1.0));
             let [expected, actual] = pixels.map(|pixels| -> Vec<[f32; 3]> {
                 pixels.par_iter().map(|p| p.map(|x| aces(f64::from(x).max(0.0) * scale) as f32)).collect()
             });
-            for (most, x) in flip.iter_mut().zip(ldr(rows.size[0], [&expected, &actual], ppd)) {
+            for (most, x) in flip.iter_mut().zip(ldr(width, [&expected, &actual], ppd)) {
                 if x > *most {
                     *most = x;
                 }
@@ -333,16 +343,18 @@ mod tests {
         }
     }
 
-    type Flip = fn(&Rows<'_>, f64) -> Vec<f32>;
+    type Flip = fn(&Tiles<'_>, f64) -> Vec<f32>;
 
     fn flip(flip: Flip, width: usize, pictures: [&[[f32; 3]]; 2]) -> Vec<f32> {
-        with_rows(width, pictures, |rows| flip(rows, PIXELS_PER_DEGREE))
+        with_tiles(width, pictures, |tiles| flip(tiles, PIXELS_PER_DEGREE))
     }
 
-    fn with_rows<T>(width: usize, [expected, actual]: [&[[f32; 3]]; 2], of: impl FnOnce(&Rows<'_>) -> T) -> T {
-        let read =
-            |rows: Range<usize>| [expected, actual].map(|pixels| pixels[rows.start * width..rows.end * width].to_vec());
-        of(&Rows { size: [width, expected.len() / width], read: &read })
+    fn with_tiles<T>(width: usize, [expected, actual]: [&[[f32; 3]]; 2], of: impl FnOnce(&Tiles<'_>) -> T) -> T {
+        let read = |tile: &Tile| {
+            [expected, actual]
+                .map(|pixels| tile.y.clone().flat_map(|y| &pixels[y * width..][tile.x.clone()]).copied().collect())
+        };
+        of(&Tiles { size: [width, expected.len() / width], read: &read })
     }
 
     fn linear(pixels: &[[u8; 3]]) -> Vec<[f32; 3]> {
@@ -381,18 +393,18 @@ mod tests {
         assert!((flip[15 * 48 + 25] - 0.332_805).abs() < 1e-4 && (flip[3 * 48 + 3] - 0.017_351).abs() < 1e-4);
     }
 
-    /// Bands give what the whole picture gives, to the bit.
+    /// Tiles give what the whole picture gives, to the bit.
     #[test]
-    fn bands_do_not_show() {
+    fn tiles_do_not_show() {
         let (width, height) = (320, 150);
         let [expected, actual] = pair(width, height, 5).map(|pixels| linear(&pixels));
         let width = width as usize;
         let whole = ldr(width, [&expected, &actual], PIXELS_PER_DEGREE);
-        let bands = with_rows(width, [&expected, &actual], |rows| {
-            assert_eq!(rows.bands(width * 32).count(), 5);
-            rows.map(width * 32, PIXELS_PER_DEGREE, |pixels| ldr(width, pixels, PIXELS_PER_DEGREE))
+        let tiles = with_tiles(width, [&expected, &actual], |tiles| {
+            assert_eq!(tiles.tiles(48).count(), 7 * 4);
+            tiles.map(48, PIXELS_PER_DEGREE, |width, pixels| ldr(width, pixels, PIXELS_PER_DEGREE))
         });
-        assert!(bands == whole);
+        assert!(tiles == whole);
     }
 
     #[test]

@@ -1,11 +1,10 @@
 //! Image difference metrics.
 
-use std::ops::Range;
-
+use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::flip::{self, PIXELS_PER_DEGREE, Rows, flip_hdr, flip_ldr};
+use super::flip::{self, PIXELS_PER_DEGREE, Tile, Tiles, flip_hdr, flip_ldr};
 use super::rank::ranked;
 use crate::math::to_srgb;
 use crate::raster::Layers;
@@ -146,6 +145,38 @@ pub fn bytes_needed(pixels: [u64; 2], channels: [u64; 2]) -> u64 {
     samples[0].saturating_add(samples[1]).saturating_add(decoded.max(flip::bytes_needed(pixels[0])))
 }
 
+/// The differences of some pixels.
+#[derive(Clone, Copy, Default)]
+struct Differences {
+    /// The sum of their squares.
+    squares: f64,
+    /// The largest.
+    max: f64,
+    /// Pixels with one above [`NOTICED`].
+    noticed: usize,
+}
+
+impl Differences {
+    /// Adds a pixel with the differences of its channels.
+    fn add(&mut self, channels: impl Iterator<Item = f64>) {
+        let mut worst = 0.0_f64;
+        for d in channels {
+            self.squares += d * d;
+            worst = worst.max(d);
+        }
+        self.max = self.max.max(worst);
+        self.noticed += usize::from(worst > NOTICED);
+    }
+
+    fn and(self, other: &Self) -> Self {
+        Self {
+            squares: self.squares + other.squares,
+            max: self.max.max(other.max),
+            noticed: self.noticed + other.noticed,
+        }
+    }
+}
+
 /// The differences between `actual` and `expected` in the channels that `chosen` selects. FLIP compares red, green and blue if
 /// they are among them, otherwise the first channel as grey. `is_hdr` compares linear light, otherwise values are
 /// sRGB-encoded.
@@ -175,16 +206,14 @@ pub fn measure(expected: &Layers, actual: &Layers, chosen: &[String], is_hdr: bo
         let d = if a.to_bits() == b.to_bits() { 0.0 } else { (show(a, &names[c]) - show(b, &names[c])).abs() };
         if d.is_nan() { f64::INFINITY } else { d }
     };
-    let (mut squares, mut max, mut noticed) = (0.0, 0.0_f64, 0_usize);
-    for i in 0..pixels {
-        let mut worst = 0.0_f64;
-        for d in (0..pairs.len()).map(|c| difference(c, i)) {
-            squares += d * d;
-            worst = worst.max(d);
-        }
-        max = max.max(worst);
-        noticed += usize::from(worst > NOTICED);
-    }
+    let of_row = |y: usize| {
+        let mut row = Differences::default();
+        (y * width..(y + 1) * width).for_each(|i| row.add((0..pairs.len()).map(|c| difference(c, i))));
+        row
+    };
+    // Row by row, so that the sum is the same on any number of threads.
+    let rows: Vec<Differences> = (0..height).into_par_iter().map(of_row).collect();
+    let all = rows.iter().fold(Differences::default(), Differences::and);
     let of_layer = |c: &str| names.iter().find(|n| *n == c || n.ends_with(&format!(".{c}"))).map(String::as_str);
     let first = names.first().map_or("", String::as_str);
     let rgb = match (of_layer("R"), of_layer("G"), of_layer("B")) {
@@ -194,19 +223,20 @@ pub fn measure(expected: &Layers, actual: &Layers, chosen: &[String], is_hdr: bo
     let colours = [expected, actual].map(|picture| rgb.map(|name| picture.channel(name).unwrap_or(&[])));
     // FLIP is undefined for infinities.
     let finite = |x: f32| if x.is_finite() { x } else { f32::MAX.sqrt() };
-    let read = |rows: Range<usize>| {
-        colours.map(|colours| (rows.start * width..rows.end * width).map(|i| colours.map(|c| finite(c[i]))).collect())
+    let read = |tile: &Tile| {
+        let at = || tile.y.clone().flat_map(|y| tile.x.clone().map(move |x| y * width + x));
+        colours.map(|colours| at().map(|i| colours.map(|c| finite(c[i]))).collect())
     };
-    let rows = Rows { size: [width, height], read: &read };
-    let map = if is_hdr { flip_hdr(&rows, PIXELS_PER_DEGREE) } else { flip_ldr(&rows, PIXELS_PER_DEGREE) };
+    let tiles = Tiles { size: [width, height], read: &read };
+    let map = if is_hdr { flip_hdr(&tiles, PIXELS_PER_DEGREE) } else { flip_ldr(&tiles, PIXELS_PER_DEGREE) };
     let values = |visit: &mut dyn FnMut(f64)| map.iter().map(|&x| f64::from(x)).for_each(visit);
     Ok(Measures {
         flip: map.iter().map(|&x| f64::from(x)).sum::<f64>() / pixels as f64,
         flip_95: ranked(&values, |count| (count * 95).div_ceil(100).max(1) - 1).unwrap_or(0.0),
         flip_max: map.iter().copied().fold(0.0, f32::max).into(),
-        max,
-        rms: libm::sqrt(squares / (pixels * names.len().max(1)) as f64),
-        share: noticed as f64 / pixels as f64,
+        max: all.max,
+        rms: libm::sqrt(all.squares / (pixels * names.len().max(1)) as f64),
+        share: all.noticed as f64 / pixels as f64,
         map,
     })
 }

@@ -8,7 +8,7 @@ mod rank;
 mod report;
 mod scene_change;
 
-pub use flip::{PIXELS_PER_DEGREE, Rows, flip_hdr, flip_ldr};
+pub use flip::{PIXELS_PER_DEGREE, Tile, Tiles, flip_hdr, flip_ldr};
 pub use measure::{CompareError, Measures, Metric, bytes_needed, measure};
 pub use report::{Outcome, Pair, Panel, html, junit, summary};
 pub use scene_change::changes;

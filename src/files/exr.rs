@@ -1,6 +1,6 @@
 //! OpenEXR decoding and encoding; decoding of skies (OpenEXR or Radiance HDR).
 
-use std::io::{self, Cursor};
+use std::io::{self, Cursor, Read, Seek};
 
 use exr::block::BlockIndex;
 use exr::image::write::channels::{ChannelsWriter, WritableChannels};
@@ -75,17 +75,18 @@ fn check_size(width: usize, height: usize, channels: usize) -> Result<(), ExrErr
 ///
 /// # Errors
 /// [`ExrError`].
-pub fn decode_exr(bytes: &[u8]) -> Result<Layers, ExrError> {
-    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false)?;
+pub fn decode_exr(mut source: impl Read + Seek) -> Result<Layers, ExrError> {
+    let meta = exr::meta::MetaData::read_from_buffered(&mut source, false)?;
     let header = meta.headers.first().ok_or(ExrError::Empty)?;
     check_size(header.layer_size.width(), header.layer_size.height(), header.channels.list.len())?;
+    source.rewind().map_err(exr::error::Error::from)?;
     let image = read()
         .no_deep_data()
         .largest_resolution_level()
         .all_channels()
         .first_valid_layer()
         .all_attributes()
-        .from_buffered(Cursor::new(bytes))?;
+        .from_buffered(source)?;
     let layer = image.layer_data;
     let pixels = layer.size.width() * layer.size.height();
     let channels: Vec<Channel> = layer
@@ -294,10 +295,10 @@ fn ascii(text: &str) -> String {
 /// [`PanoramaError`].
 pub fn decode_panorama(bytes: &[u8]) -> Result<Panorama, PanoramaError> {
     let (width, height, pixels) = if is_exr(bytes) {
-        let layers = decode_exr(bytes)?;
+        let layers = decode_exr(Cursor::new(bytes))?;
         (layers.width, layers.height, layers.pixels(["R", "G", "B"]).ok_or(PanoramaError::NoColours)?)
     } else {
-        let picture = super::picture::decode(bytes)?.into_rgb32f();
+        let picture = super::picture::decode(Cursor::new(bytes))?.into_rgb32f();
         let (width, height) = picture.dimensions();
         (width, height, picture.pixels().map(|p| p.0).collect())
     };
@@ -333,9 +334,9 @@ mod tests {
             chromaticities: Some([0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329]),
         };
         let bytes = encode_exr(&picture).unwrap();
-        assert_eq!(decode_exr(&bytes).unwrap(), picture);
-        assert!(decode_exr(&bytes[..bytes.len() - 9]).is_err());
-        assert!(decode_exr(b"no picture").is_err());
+        assert_eq!(decode_exr(Cursor::new(&bytes)).unwrap(), picture);
+        assert!(decode_exr(Cursor::new(&bytes[..bytes.len() - 9])).is_err());
+        assert!(decode_exr(Cursor::new(b"no picture")).is_err());
         assert_eq!(
             serde_json::from_str::<String>(&format!("\"{}\"", ascii("\u{6728} elm \u{1f333}"))).unwrap(),
             "\u{6728} elm \u{1f333}"

@@ -1,6 +1,6 @@
 //! Pictures: PNG and JPEG decoding, PNG encoding.
 
-use std::io::{self, Cursor, Write};
+use std::io::{self, BufRead, Cursor, Seek, Write};
 
 use image::{DynamicImage, ImageBuffer, ImageReader, Limits};
 
@@ -65,8 +65,8 @@ impl Rgba {
 }
 
 /// Decodes a picture in any known format, within the limits.
-pub(super) fn decode(bytes: &[u8]) -> Result<DynamicImage, PictureError> {
-    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
+pub(super) fn decode(source: impl BufRead + Seek) -> Result<DynamicImage, PictureError> {
+    let mut reader = ImageReader::new(source).with_guessed_format()?;
     if reader.format().is_none() {
         return Err(PictureError::Format);
     }
@@ -83,7 +83,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<DynamicImage, PictureError> {
 /// # Errors
 /// [`PictureError`].
 pub fn decode_grey(bytes: &[u8]) -> Result<Grey, PictureError> {
-    let picture = decode(bytes)?.into_luma16();
+    let picture = decode(Cursor::new(bytes))?.into_luma16();
     let (width, height) = picture.dimensions();
     let values = picture.into_raw().into_iter().map(|v| f32::from(v) / 65535.0).collect();
     Grey::new(width, height, values).ok_or(PictureError::Empty)
@@ -94,7 +94,7 @@ pub fn decode_grey(bytes: &[u8]) -> Result<Grey, PictureError> {
 /// # Errors
 /// [`PictureError`].
 pub fn decode_png(bytes: &[u8]) -> Result<Rgba, PictureError> {
-    let picture = decode(bytes)?.into_rgba8();
+    let picture = decode(Cursor::new(bytes))?.into_rgba8();
     let (width, height) = picture.dimensions();
     Ok(Rgba { width, height, bytes: picture.into_raw() })
 }
@@ -104,7 +104,7 @@ pub fn decode_png(bytes: &[u8]) -> Result<Rgba, PictureError> {
 /// # Errors
 /// [`PictureError`].
 pub fn decode_light(bytes: &[u8]) -> Result<Rgba, PictureError> {
-    let picture = decode(bytes)?.into_rgba16();
+    let picture = decode(Cursor::new(bytes))?.into_rgba16();
     let (width, height) = picture.dimensions();
     let byte = |x: f64| libm::round(x * 255.0) as u8;
     let pixel = |p: &image::Rgba<u16>| {
@@ -118,24 +118,26 @@ pub fn decode_light(bytes: &[u8]) -> Result<Rgba, PictureError> {
 ///
 /// # Errors
 /// [`PictureError`].
-pub fn decode_linear(bytes: &[u8]) -> Result<Layers, PictureError> {
-    match png_channels(bytes) {
-        Some(([width, height], channels)) => {
-            Ok(Layers { width, height, channels, texts: png_texts(bytes), ..Layers::default() })
-        }
-        None => decode_whole(bytes),
+pub fn decode_linear(mut source: impl BufRead + Seek) -> Result<Layers, PictureError> {
+    if let Some(([width, height], channels, texts)) = png_channels(&mut source) {
+        return Ok(Layers { width, height, channels, texts, ..Layers::default() });
     }
+    source.rewind()?;
+    decode_whole(source)
 }
 
-/// The size of a PNG and its channels in linear light, premultiplied, row by row: nothing else of it is kept, since pictures are
-/// large. `None` where it is interlaced, or is to be refused.
-fn png_channels(bytes: &[u8]) -> Option<([u32; 2], Vec<Channel>)> {
+/// Keyword and text.
+type Texts = Vec<(String, String)>;
+
+/// The size of a PNG, its channels in linear light, premultiplied, row by row, and its texts: nothing else of it is kept, since
+/// pictures are large. `None` where it is interlaced, or is to be refused.
+fn png_channels(source: impl BufRead + Seek) -> Option<([u32; 2], Vec<Channel>, Texts)> {
     let limits = png::Limits { bytes: MOST_BYTES as usize };
-    let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
+    let mut decoder = png::Decoder::new_with_limits(source, limits);
     decoder.set_transformations(png::Transformations::EXPAND);
     let mut reader = decoder.read_info().ok()?;
     let info = reader.info();
-    let (size, is_interlaced) = ([info.width, info.height], info.interlaced);
+    let (size, is_interlaced, texts) = ([info.width, info.height], info.interlaced, texts(info));
     let pixels = u64::from(size[0]) * u64::from(size[1]);
     if is_interlaced || size.iter().any(|&side| side > MOST_SIDE) || pixels.saturating_mul(8) > MOST_BYTES {
         return None;
@@ -150,36 +152,40 @@ fn png_channels(bytes: &[u8]) -> Option<([u32; 2], Vec<Channel>)> {
         png::ColorType::Rgba => ([0, 1, 2], Some(3)),
         png::ColorType::Indexed => return None,
     };
+    let most = if is_wide { 65535.0 } else { 255.0 };
+    let light: Vec<f64> = (0..=most as u32).map(|sample| from_srgb(f64::from(sample) / most)).collect();
     let mut values: [Vec<f32>; 4] = Default::default();
     values.iter_mut().try_for_each(|channel| channel.try_reserve_exact(pixels as usize)).ok()?;
     while let Some(row) = reader.next_row().ok()? {
         for pixel in row.data().chunks_exact(if is_wide { 2 * samples } else { samples }) {
             let sample = |i: usize| match is_wide {
-                true => f64::from(u16::from_be_bytes([pixel[2 * i], pixel[2 * i + 1]])) / 65535.0,
-                false => f64::from(pixel[i]) / 255.0,
+                true => u16::from_be_bytes([pixel[2 * i], pixel[2 * i + 1]]),
+                false => pixel[i].into(),
             };
-            let a = alpha.map_or(1.0, sample);
+            let a = alpha.map_or(1.0, |i| f64::from(sample(i)) / most);
             for (channel, i) in values.iter_mut().zip(rgb) {
-                channel.push((from_srgb(sample(i)) * a) as f32);
+                channel.push((light[usize::from(sample(i))] * a) as f32);
             }
             values[3].push(a as f32);
         }
     }
     let channel = |(values, name): (Vec<f32>, &str)| Channel { name: name.to_owned(), values, is_half: false };
     let is_whole = values[3].len() as u64 == pixels;
-    is_whole.then(|| (size, values.into_iter().zip(["R", "G", "B", "A"]).map(channel).collect()))
+    is_whole.then(|| (size, values.into_iter().zip(["R", "G", "B", "A"]).map(channel).collect(), texts))
 }
 
 /// Decodes a picture of any format as [`decode_linear`] does, all at once.
-fn decode_whole(bytes: &[u8]) -> Result<Layers, PictureError> {
-    let picture = decode(bytes)?;
+fn decode_whole(mut source: impl BufRead + Seek) -> Result<Layers, PictureError> {
+    let texts = png::Decoder::new(&mut source).read_info().map_or_else(|_| Texts::new(), |reader| texts(reader.info()));
+    source.rewind()?;
+    let picture = decode(source)?;
     let (width, height) = (picture.width(), picture.height());
     // Pixels of a byte a channel are not blown up: pictures are large.
     let channels = match picture.color().bytes_per_pixel() / picture.color().channel_count() {
         1 => linear_channels(&picture.into_rgba8(), |v| f64::from(v) / 255.0),
         _ => linear_channels(&picture.into_rgba16(), |v| f64::from(v) / 65535.0),
     };
-    Ok(Layers { width, height, channels, texts: png_texts(bytes), ..Layers::default() })
+    Ok(Layers { width, height, channels, texts, ..Layers::default() })
 }
 
 /// The channels of an sRGB picture with alpha, whose samples `value` brings to 0 to 1.
@@ -202,9 +208,11 @@ where
 /// The texts of a PNG picture; empty for other formats.
 #[must_use]
 pub fn png_texts(bytes: &[u8]) -> Vec<(String, String)> {
-    let Ok(reader) = png::Decoder::new(Cursor::new(bytes)).read_info() else { return Vec::new() };
-    let chunks = &reader.info().utf8_text;
-    chunks.iter().filter_map(|chunk| Some((chunk.keyword.clone(), chunk.get_text().ok()?))).collect()
+    png::Decoder::new(Cursor::new(bytes)).read_info().map_or_else(|_| Texts::new(), |reader| texts(reader.info()))
+}
+
+fn texts(info: &png::Info<'_>) -> Texts {
+    info.utf8_text.iter().filter_map(|chunk| Some((chunk.keyword.clone(), chunk.get_text().ok()?))).collect()
 }
 
 /// `picture` scaled to fit `width` by `height`, its aspect kept.
@@ -321,12 +329,11 @@ mod tests {
             let mut bytes = Cursor::new(Vec::new());
             kind.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
             let bytes = bytes.into_inner();
-            let ([width, height], channels) = png_channels(&bytes).unwrap();
-            let whole = decode_whole(&bytes).unwrap();
+            let ([width, height], channels, _) = png_channels(Cursor::new(&bytes)).unwrap();
+            let whole = decode_whole(Cursor::new(&bytes)).unwrap();
             assert_eq!((width, height, &channels), (whole.width, whole.height, &whole.channels), "{:?}", kind.color());
-            assert!(
-                png_channels(&bytes[..bytes.len() / 2]).is_none() && decode_linear(&bytes[..bytes.len() / 2]).is_err()
-            );
+            let half = &bytes[..bytes.len() / 2];
+            assert!(png_channels(Cursor::new(half)).is_none() && decode_linear(Cursor::new(half)).is_err());
         }
     }
 }

@@ -146,7 +146,7 @@ fn samples(picture: DynamicImage) -> Samples {
 
 /// Decodes an OpenEXR picture; its colour space is that of its chromaticities, by default Rec. 709.
 fn linear(bytes: &[u8]) -> Result<Plate, PlateError> {
-    let layers = decode_exr(bytes)?;
+    let layers = decode_exr(Cursor::new(bytes))?;
     let pixels = layers.pixels(["R", "G", "B"]).ok_or(PlateError::NoColours)?;
     if layers.channel("A").is_some_and(|alpha| alpha.iter().any(|&a| a < OPAQUE)) {
         return Err(PlateError::Transparent);

@@ -1,5 +1,6 @@
 //! Objects: what they name is looked up, and whether their skin fits.
 
+use std::io::Cursor;
 use std::sync::Arc;
 
 use super::document::{ObjectSpec, TileSpec};
@@ -151,7 +152,7 @@ impl Resolver<'_> {
     }
 
     fn painting(&mut self, place: &str, spec: &PaintSpec) -> Option<Arc<Painting>> {
-        let picture = self.read(place, &spec.file, decode_linear)?;
+        let picture = self.read(place, &spec.file, |bytes| decode_linear(Cursor::new(bytes)))?;
         let pixels = picture.pixels(["R", "G", "B"])?;
         Some(Arc::new(Painting { size: [picture.width, picture.height], pixels }))
     }

@@ -2,6 +2,7 @@
 #![cfg(unix)]
 
 use std::fs;
+use std::io::Cursor;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -86,8 +87,8 @@ fn the_studio_is_carried_over() {
         let common = ["render", name, "--size", "120x90"];
         succeed_in(folder.path(), &[&common[..], &["--samples", "32", "-o", "ours.png"]].concat());
         succeed_in(folder.path(), &[&common[..], &["--samples", "9", "--with", "povray", "-o", "theirs.png"]].concat());
-        let [ours, theirs] =
-            ["ours.png", "theirs.png"].map(|f| decode_linear(&fs::read(folder.path().join(f)).unwrap()).unwrap());
+        let [ours, theirs] = ["ours.png", "theirs.png"]
+            .map(|f| decode_linear(Cursor::new(fs::read(folder.path().join(f)).unwrap())).unwrap());
         let measures = measure(&theirs, &ours, &[], false).unwrap();
         assert!(Metric::Flip.of(&measures) < 0.06, "{name}: {}", measures.flip);
     }
@@ -129,7 +130,7 @@ fn depth_alpha_and_texts_are_written() {
     let differ = differences(&decode_png(&a).unwrap(), &decode_png(&b).unwrap());
     assert!(differ.iter().all(|d| *d <= 1));
     assert_eq!(decode_png(&a).unwrap().bytes[3], 0, "the sky is left out");
-    let layers = decode_linear(&a).unwrap();
+    let layers = decode_linear(Cursor::new(&a)).unwrap();
     let scene: serde_json::Value = serde_json::from_str(layers.text("Scene").unwrap()).unwrap();
     assert_eq!(scene["title"], "Saguaro");
     assert!(layers.text("View").unwrap().contains("\"look\":\"studio\""));
