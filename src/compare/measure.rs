@@ -177,6 +177,26 @@ impl Differences {
     }
 }
 
+/// FLIP a pixel of `expected` and `actual`, of red, green and blue if they are among `names`, otherwise of the first as grey.
+fn flip_map(pictures: [&Layers; 2], names: &[String], is_hdr: bool) -> Vec<f32> {
+    let [width, height] = [pictures[0].width, pictures[0].height].map(|side| side as usize);
+    let of_layer = |c: &str| names.iter().find(|n| *n == c || n.ends_with(&format!(".{c}"))).map(String::as_str);
+    let first = names.first().map_or("", String::as_str);
+    let rgb = match (of_layer("R"), of_layer("G"), of_layer("B")) {
+        (Some(r), Some(g), Some(b)) => [r, g, b],
+        _ => [first; 3],
+    };
+    let colours = pictures.map(|picture| rgb.map(|name| picture.channel(name).unwrap_or(&[])));
+    // FLIP is undefined for infinities.
+    let finite = |x: f32| if x.is_finite() { x } else { f32::MAX.sqrt() };
+    let read = |tile: &Tile| {
+        let at = || tile.y.clone().flat_map(|y| tile.x.clone().map(move |x| y * width + x));
+        colours.map(|colours| at().map(|i| colours.map(|c| finite(c[i]))).collect())
+    };
+    let tiles = Tiles { size: [width, height], read: &read };
+    if is_hdr { flip_hdr(&tiles, PIXELS_PER_DEGREE) } else { flip_ldr(&tiles, PIXELS_PER_DEGREE) }
+}
+
 /// The differences between `actual` and `expected` in the channels that `chosen` selects. FLIP compares red, green and blue if
 /// they are among them, otherwise the first channel as grey. `is_hdr` compares linear light, otherwise values are
 /// sRGB-encoded.
@@ -214,21 +234,7 @@ pub fn measure(expected: &Layers, actual: &Layers, chosen: &[String], is_hdr: bo
     // Row by row, so that the sum is the same on any number of threads.
     let rows: Vec<Differences> = (0..height).into_par_iter().map(of_row).collect();
     let all = rows.iter().fold(Differences::default(), Differences::and);
-    let of_layer = |c: &str| names.iter().find(|n| *n == c || n.ends_with(&format!(".{c}"))).map(String::as_str);
-    let first = names.first().map_or("", String::as_str);
-    let rgb = match (of_layer("R"), of_layer("G"), of_layer("B")) {
-        (Some(r), Some(g), Some(b)) => [r, g, b],
-        _ => [first; 3],
-    };
-    let colours = [expected, actual].map(|picture| rgb.map(|name| picture.channel(name).unwrap_or(&[])));
-    // FLIP is undefined for infinities.
-    let finite = |x: f32| if x.is_finite() { x } else { f32::MAX.sqrt() };
-    let read = |tile: &Tile| {
-        let at = || tile.y.clone().flat_map(|y| tile.x.clone().map(move |x| y * width + x));
-        colours.map(|colours| at().map(|i| colours.map(|c| finite(c[i]))).collect())
-    };
-    let tiles = Tiles { size: [width, height], read: &read };
-    let map = if is_hdr { flip_hdr(&tiles, PIXELS_PER_DEGREE) } else { flip_ldr(&tiles, PIXELS_PER_DEGREE) };
+    let map = flip_map([expected, actual], &names, is_hdr);
     let values = |visit: &mut dyn FnMut(f64)| map.iter().map(|&x| f64::from(x)).for_each(visit);
     Ok(Measures {
         flip: map.iter().map(|&x| f64::from(x)).sum::<f64>() / pixels as f64,

@@ -71,15 +71,21 @@ fn check_size(width: usize, height: usize, channels: usize) -> Result<(), ExrErr
     Ok(())
 }
 
+/// Checks the limits by the header alone, and goes back to the start.
+fn check_header(source: &mut (impl Read + Seek)) -> Result<(), ExrError> {
+    let meta = exr::meta::MetaData::read_from_buffered(&mut *source, false)?;
+    let header = meta.headers.first().ok_or(ExrError::Empty)?;
+    check_size(header.layer_size.width(), header.layer_size.height(), header.channels.list.len())?;
+    source.rewind().map_err(exr::error::Error::from)?;
+    Ok(())
+}
+
 /// Decodes the first layer of an OpenEXR picture with all channels and texts.
 ///
 /// # Errors
 /// [`ExrError`].
 pub fn decode_exr(mut source: impl Read + Seek) -> Result<Layers, ExrError> {
-    let meta = exr::meta::MetaData::read_from_buffered(&mut source, false)?;
-    let header = meta.headers.first().ok_or(ExrError::Empty)?;
-    check_size(header.layer_size.width(), header.layer_size.height(), header.channels.list.len())?;
-    source.rewind().map_err(exr::error::Error::from)?;
+    check_header(&mut source)?;
     let image = read()
         .no_deep_data()
         .largest_resolution_level()

@@ -39,11 +39,11 @@ fn comparisons_fit_into_memory() {
     for name in ["a/2.png", "b/1.png", "b/2.png"] {
         fs::copy(at("a/1.png"), at(name)).unwrap();
     }
-    let refused = run_in(folder.path(), &["compare", "a", "b", "--max-memory", "50M"]);
+    let refused = run_in(folder.path(), &["compare", "a", "b", "--max-memory", "25M"]);
     assert_eq!(refused.status.code(), Some(2));
-    assert!(text(&refused.stdout).contains("more than the 52 MB allowed"), "{}", text(&refused.stdout));
+    assert!(text(&refused.stdout).contains("more than the 26 MB allowed"), "{}", text(&refused.stdout));
     // One after the other.
-    succeed_in(folder.path(), &["compare", "a", "b", "--max-memory", "150M"]);
+    succeed_in(folder.path(), &["compare", "a", "b", "--max-memory", "60M"]);
 }
 
 /// What no estimate knows - how much a file becomes that is read - ends when it takes too much.
