@@ -205,7 +205,7 @@ fn ldr(width: usize, pictures: [&[[f32; 3]]; 2], ppd: f64) -> Vec<f32> {
 }
 
 /// A part of a picture.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Tile {
     /// Columns.
     pub x: Range<usize>,
@@ -223,8 +223,9 @@ pub struct Tiles<'a> {
 
 /// Pixels along a side of what is worked on at once.
 const SIDE: usize = 256;
-/// Bytes that a pixel of a tile takes meanwhile.
-const PIXEL_BYTES: u64 = 240;
+/// Bytes that a pixel of a tile takes meanwhile: both pictures (24), and in HDR-FLIP their exposures and the maximum (28); colours
+/// and features of the one that is done (40); the opponent colours of the other (24) and six planes of its filters (48).
+const PIXEL_BYTES: u64 = 164;
 
 /// Bytes that FLIP of so many pixels takes at its peak besides the pictures: its map, and a tile on its way.
 pub(super) fn bytes_needed(pixels: u64) -> u64 {

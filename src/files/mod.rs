@@ -29,7 +29,7 @@ pub use inputs::Inputs;
 pub use mesh::{MeshError, decode_mesh, decode_obj, decode_ply};
 pub use picture::{
     PictureError, PngHead, Rgba, decode_grey, decode_light, decode_linear, decode_png, encode_png, encode_png_rows,
-    encode_png16, png_texts, resize,
+    encode_png16, resize,
 };
 pub use plate::{ACESCG, PlateError, REC709, decode_plate, resize_grey, resize_plate, set_chromaticities};
 pub use scratch::Scratch;

@@ -205,12 +205,7 @@ where
     (0..4).zip(["R", "G", "B", "A"]).map(channel).collect()
 }
 
-/// The texts of a PNG picture; empty for other formats.
-#[must_use]
-pub fn png_texts(bytes: &[u8]) -> Vec<(String, String)> {
-    png::Decoder::new(Cursor::new(bytes)).read_info().map_or_else(|_| Texts::new(), |reader| texts(reader.info()))
-}
-
+/// The texts before a PNG's pixels.
 fn texts(info: &png::Info<'_>) -> Texts {
     info.utf8_text.iter().filter_map(|chunk| Some((chunk.keyword.clone(), chunk.get_text().ok()?))).collect()
 }

@@ -5,6 +5,11 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
+use lichtenberg::files::{encode_exr, encode_png16};
+use lichtenberg::math::Stream;
+use lichtenberg::raster::{Channel, Layers};
+use rand::RngExt;
+
 use crate::support::sample::tests_all;
 use crate::support::{lichtenberg, run_in, succeed_in, text};
 
@@ -39,11 +44,42 @@ fn comparisons_fit_into_memory() {
     for name in ["a/2.png", "b/1.png", "b/2.png"] {
         fs::copy(at("a/1.png"), at(name)).unwrap();
     }
-    let refused = run_in(folder.path(), &["compare", "a", "b", "--max-memory", "25M"]);
+    let refused = run_in(folder.path(), &["compare", "a", "b", "--max-memory", "20M"]);
     assert_eq!(refused.status.code(), Some(2));
-    assert!(text(&refused.stdout).contains("more than the 26 MB allowed"), "{}", text(&refused.stdout));
+    assert!(text(&refused.stdout).contains("more than the 20 MB allowed"), "{}", text(&refused.stdout));
     // One after the other.
     succeed_in(folder.path(), &["compare", "a", "b", "--max-memory", "60M"]);
+}
+
+/// Two pictures of six million pixels of noise, of 16 bits a sample, in 40 bytes a pixel: asked for and taken.
+#[test]
+fn a_pixel_is_compared_in_40_bytes() {
+    if !tests_all() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let (width, height) = (3000_u32, 2000_u32);
+    let pixels = width as usize * height as usize;
+    for (i, name) in ["a", "b"].into_iter().enumerate() {
+        let mut random = Stream::new(i as u64, "noise");
+        let values: Vec<u16> = (0..4 * pixels).map(|_| random.random()).collect();
+        let mut png = Vec::new();
+        encode_png16([width, height], &values, &[], &mut png).unwrap();
+        fs::write(folder.path().join(format!("{name}.png")), png).unwrap();
+        let channel = |(c, channel): (usize, &str)| Channel {
+            name: channel.to_owned(),
+            values: values.iter().skip(c).step_by(4).map(|&v| f32::from(v) / 65535.0).collect(),
+            is_half: true,
+        };
+        let channels = ["A", "B", "G", "R"].into_iter().enumerate().map(channel).collect();
+        let exr = encode_exr(&Layers { width, height, channels, ..Layers::default() }).unwrap();
+        fs::write(folder.path().join(format!("{name}.exr")), exr).unwrap();
+    }
+    let limit = (40 * pixels).to_string();
+    for [a, b] in [["a.png", "b.png"], ["a.exr", "b.exr"]] {
+        let differ = run_in(folder.path(), &["compare", a, b, "--max-memory", &limit]);
+        assert_eq!(differ.status.code(), Some(1), "{}{}", text(&differ.stdout), text(&differ.stderr));
+    }
 }
 
 /// What no estimate knows - how much a file becomes that is read - ends when it takes too much.
