@@ -31,7 +31,7 @@ pub use polygon::fill;
 pub use profile::{Profile, ProfileError};
 pub use round_cone::{Frustum, frustum};
 pub use sampled::{Sampled, SignedDistance};
-pub use segment::{segment_distance, segment_parameter};
+pub use segment::{segment_distance, segment_distance_squared, segment_parameter};
 pub use shape::{Shape, Solid};
 pub use shape_error::ShapeError;
 pub use shape_spec::{MeshParts, Rings, ShapeFiles, ShapeSpec, SketchLines, SolidSpec};

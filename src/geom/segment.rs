@@ -13,5 +13,11 @@ pub fn segment_parameter(p: DVec3, a: DVec3, b: DVec3) -> f64 {
 /// Distance of `p` from the segment from `a` to `b`.
 #[must_use]
 pub fn segment_distance(p: DVec3, a: DVec3, b: DVec3) -> f64 {
-    (p - a - (b - a) * segment_parameter(p, a, b)).length()
+    libm::sqrt(segment_distance_squared(p, a, b))
+}
+
+/// The square of [`segment_distance`].
+#[must_use]
+pub fn segment_distance_squared(p: DVec3, a: DVec3, b: DVec3) -> f64 {
+    (p - a - (b - a) * segment_parameter(p, a, b)).length_squared()
 }
