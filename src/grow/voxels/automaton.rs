@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::light::LightSense;
-use super::neighbourhood::{Neighbour, Neighbourhood};
+use super::neighbourhood::{Near, Neighbourhood};
 use crate::geom::{Occupancy, Shape};
 use crate::grow::error::{GrowError, Key, Problem};
 use crate::grow::grown::{Grown, NODE_BYTES, bits};
@@ -199,7 +199,7 @@ impl Automaton {
     }
 
     /// The best that `tip` can do against what has grown; none where no direction is open.
-    fn choose(&self, tip: &Tip, garden: &Garden<'_>, near: &[Neighbour], mut random: Stream) -> Option<Choice> {
+    fn choose(&self, tip: &Tip, garden: &Garden<'_>, near: &Near<'_>, mut random: Stream) -> Option<Choice> {
         let Garden { space, voxels, .. } = garden;
         let solids = garden.solids.as_ref();
         let Start { at: from, way, .. } = tip.start;
@@ -210,43 +210,44 @@ impl Automaton {
                 && !space.forbid.as_ref().is_some_and(|forbid| forbid.contains(p))
                 && self.keep_from.as_ref().is_none_or(|(shape, by)| shape.distance(p) >= *by)
         };
-        // What each counts without the light, and with all of it.
-        let mut open: Vec<(f64, f64, DVec3, DVec3)> = Vec::with_capacity(self.tries as usize);
-        for _ in 0..self.tries {
-            let tried = strayed(way, angles, &mut random);
-            let Some(at) = self.lead(from, tried) else { continue };
-            if near.iter().any(|near| near.is_in_the_way(from, at, self.apart)) {
-                continue;
-            }
+        let is_free = |at: DVec3| {
             // Nothing thicker than a voxel is stepped over.
             let pieces = libm::ceil((at - from).length() / voxels.side()).max(2.0) as u32;
-            if !(1..=pieces).all(|i| is_open(from + (at - from) * (f64::from(i) / f64::from(pieces)))) {
-                continue;
-            }
-            let went = (at - from).normalize_or(tried);
+            (1..=pieces).all(|i| is_open(from + (at - from) * (f64::from(i) / f64::from(pieces))))
+                && !near.is_in_the_way(from, at, self.apart)
+        };
+        // What each counts without room and light, and with all of both.
+        let mut tried: Vec<(f64, f64, DVec3, DVec3)> = Vec::with_capacity(self.tries as usize);
+        for _ in 0..self.tries {
+            let aim = strayed(way, angles, &mut random);
+            let Some(at) = self.lead(from, aim) else { continue };
+            let went = (at - from).normalize_or(aim);
             let mut score = self.straight * went.dot(way);
-            if self.room > 0.0 {
-                // Relatives are not in the way, but they take room: so branches part.
-                let nearest = near.iter().map(|near| near.twig.distance(at, at)).fold(ROOM * self.apart, f64::min);
-                score += self.room * (nearest / (ROOM * self.apart).max(f64::MIN_POSITIVE));
-            }
             if let Some(Attractor { at: goal, strength }) = self.toward {
                 score += strength * went.dot((goal - at).normalize_or_zero());
             }
-            open.push((score + self.light.score(went, |_| true), score, at, went));
+            tried.push((score + self.room.max(0.0) + self.light.score(went, |_| true), score, at, went));
         }
-        // Rays are costly: none are cast for what could not be the best even in full light.
-        open.sort_by(|a, b| b.0.total_cmp(&a.0));
+        // What is costly is not asked of what could not be the best even with all room and light.
+        tried.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut best: Option<Choice> = None;
-        for (most, rest, at, went) in open {
+        for (most, mut score, at, went) in tried {
             if best.is_some_and(|best| most <= best.score) {
                 break;
             }
-            let is_free = |ray: DVec3| {
+            if !is_free(at) {
+                continue;
+            }
+            if self.room > 0.0 {
+                // Relatives are not in the way, but they take room: so branches part.
+                let nearest = near.distance(at, ROOM * self.apart);
+                score += self.room * (nearest / (ROOM * self.apart).max(f64::MIN_POSITIVE));
+            }
+            let is_lit = |ray: DVec3| {
                 !solids.is_some_and(|solids| solids.is_blocked(at, ray, off))
                     && !voxels.is_blocked(at, ray, off + self.foliage)
             };
-            let score = rest + self.light.score(went, is_free);
+            score += self.light.score(went, is_lit);
             if best.is_none_or(|best| score > best.score) {
                 best = Some(Choice { score, at });
             }
@@ -362,17 +363,17 @@ impl Garden<'_> {
 
     /// What each tip would best do against what the rounds before made.
     fn choose(&self, round: u32) -> Vec<Option<Choice>> {
-        let choose = |near: &mut Vec<Neighbour>, tip: &Tip| {
+        let choose = |tip: &Tip| {
             let Plant { own, stream, .. } = &self.plants[tip.plant];
             if round >= own.rounds {
                 return None;
             }
             let reach = (own.apart * ROOM).max(self.apart) + own.step * BENT[1];
-            self.others.gather(tip.start.at, reach, tip.node, own.kin(), near);
+            let near = self.others.near(0, tip.start.at, reach, tip.node, own.kin());
             let random = stream.nth(tip.start.name).nth(u64::from(round));
-            own.choose(tip, self, near, random)
+            own.choose(tip, self, &near, random)
         };
-        self.tips.par_iter().with_min_len(8).map_init(Vec::new, choose).collect()
+        self.tips.par_iter().with_min_len(8).map(choose).collect()
     }
 
     /// Lets all grow that can, the best first, of equals the one that began first; tips that had no choice are gone.
@@ -383,7 +384,6 @@ impl Garden<'_> {
         let fresh = self.others.len();
         let mut is_alive = vec![false; self.tips.len()];
         let mut begun: Vec<(usize, Tip)> = Vec::new();
-        let mut near = Vec::new();
         for (i, Choice { at, .. }) in order {
             let tip = &mut self.tips[i];
             let plant = &mut self.plants[tip.plant];
@@ -393,9 +393,9 @@ impl Garden<'_> {
                 continue;
             }
             let from = tip.start.at;
-            self.others.gather_from(fresh, from, self.apart + own.step * BENT[1], tip.node, own.kin(), &mut near);
+            let near = self.others.near(fresh, from, self.apart + own.step * BENT[1], tip.node, own.kin());
             // Another was first: it tries again next round.
-            if near.iter().any(|near| near.is_in_the_way(from, at, own.apart)) {
+            if near.is_in_the_way(from, at, own.apart) {
                 continue;
             }
             take_up(&mut self.voxels, from, at, own.foliage);

@@ -9,39 +9,74 @@ use crate::math::DVec3;
 pub(super) struct Twig {
     pub from: DVec3,
     pub to: DVec3,
-    /// The node before it.
-    parent: Option<u32>,
-    /// Its number in its own plant.
-    own: u32,
+    /// Its number among all.
+    number: u32,
     /// How far it keeps from other growth.
     apart: f64,
-    /// The twig before it in its cell.
-    before: u32,
+    ball: Ball,
 }
 
-/// A twig that is near a node.
+/// The ball about a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Neighbour {
-    pub twig: Twig,
-    /// Do they have a common ancestor not far back? Relatives start in the same place: they are not in each other's way.
-    pub is_kin: bool,
+pub(super) struct Ball {
+    /// Its centre, twice.
+    centre: DVec3,
+    /// A little more than its diameter: more than rounding could bring others nearer.
+    width: f64,
 }
 
-impl Neighbour {
-    /// Does a segment come nearer to it than either keeps from other growth?
+impl Ball {
+    /// The ball about the segment from `a` to `b`.
+    pub fn new(a: DVec3, b: DVec3) -> Self {
+        Self { centre: a + b, width: a.distance(b) * (1.0 + 1e-9) }
+    }
+
+    /// Is the other surely farther than `reach`?
+    fn is_beyond(&self, other: &Self, reach: f64) -> bool {
+        let width = self.width + other.width + reach * (2.0 + 1e-9);
+        (self.centre - other.centre).length_squared() > width * width
+    }
+}
+
+/// The twigs near a node, but for itself and its ancestors.
+pub(super) struct Near<'a> {
+    all: &'a Neighbourhood,
+    twigs: Vec<&'a Twig>,
+    /// The node and its ancestors as far back as relatives are known.
+    own: Vec<u32>,
+}
+
+impl Near<'_> {
+    /// Does one come nearer to a segment than either keeps from other growth? Relatives, with a common ancestor not far back,
+    /// start in the same place: they are not in each other's way.
     pub fn is_in_the_way(&self, from: DVec3, to: DVec3, apart: f64) -> bool {
-        !self.is_kin && self.twig.distance(from, to) < self.twig.apart.max(apart)
+        let ball = Ball::new(from, to);
+        self.twigs.iter().any(|twig| {
+            let apart = twig.apart.max(apart);
+            !twig.ball.is_beyond(&ball, apart) && twig.distance(from, to) < apart && !self.is_kin(twig)
+        })
+    }
+
+    /// How far the nearest is from `p`, or `most`.
+    pub fn distance(&self, p: DVec3, most: f64) -> f64 {
+        let ball = Ball::new(p, p);
+        self.twigs.iter().fold(most, |most, twig| {
+            if twig.ball.is_beyond(&ball, most) { most } else { twig.distance(p, p).min(most) }
+        })
+    }
+
+    fn is_kin(&self, twig: &Twig) -> bool {
+        self.all.ancestors(twig.number).take(self.own.len()).any(|ancestor| self.own.contains(&ancestor))
     }
 }
 
 /// All twigs, in cells of a grid.
 pub(super) struct Neighbourhood {
     side: f64,
-    cells: FxHashMap<[i64; 3], u32>,
-    twigs: Vec<Twig>,
+    cells: FxHashMap<[i64; 3], Vec<Twig>>,
+    /// Of every twig the one before it, and its number in its own plant.
+    nodes: Vec<(Option<u32>, u32)>,
 }
-
-const NONE: u32 = u32::MAX;
 
 impl Twig {
     /// The least distance between it and the segment from `a` to `b` (Ericson 2005, section 5.1.9).
@@ -60,13 +95,13 @@ impl Twig {
 }
 
 impl Neighbourhood {
-    /// Nothing yet; `side` is the greatest distance at which anything is asked for.
+    /// Nothing yet; `side` is the greatest distance at which the end of a twig is asked for.
     pub fn new(side: f64) -> Self {
-        Self { side, cells: FxHashMap::default(), twigs: Vec::new() }
+        Self { side, cells: FxHashMap::default(), nodes: Vec::new() }
     }
 
     pub fn len(&self) -> u32 {
-        self.twigs.len() as u32
+        self.nodes.len() as u32
     }
 
     fn cell(&self, p: DVec3) -> [i64; 3] {
@@ -78,49 +113,36 @@ impl Neighbourhood {
     /// other growth; its number here.
     pub fn add(&mut self, from: DVec3, to: DVec3, parent: Option<u32>, own: u32, apart: f64) -> u32 {
         let number = self.len();
-        let before = self.cells.insert(self.cell(to), number).unwrap_or(NONE);
-        self.twigs.push(Twig { from, to, parent, own, apart, before });
+        let twig = Twig { from, to, number, apart, ball: Ball::new(from, to) };
+        self.cells.entry(self.cell(to)).or_default().push(twig);
+        self.nodes.push((parent, own));
         number
     }
 
     /// The number of a node in its own plant.
     pub fn own(&self, node: u32) -> u32 {
-        self.twigs[node as usize].own
+        self.nodes[node as usize].1
     }
 
-    fn ancestors(&self, node: u32, kin: usize) -> impl Iterator<Item = u32> + '_ {
-        std::iter::successors(Some(node), |&n| self.twigs[n as usize].parent).take(kin + 1)
+    /// A node and those before it.
+    fn ancestors(&self, node: u32) -> impl Iterator<Item = u32> + '_ {
+        std::iter::successors(Some(node), |&n| self.nodes[n as usize].0)
     }
 
-    /// All that comes within `reach` of `p`, but for the node `of` and its ancestors, as far as `kin` nodes back; so far common
-    /// ancestors make relatives too.
-    pub fn gather(&self, p: DVec3, reach: f64, of: u32, kin: usize, near: &mut Vec<Neighbour>) {
-        self.gather_from(0, p, reach, of, kin, near);
-    }
-
-    /// The same of twigs with the number `first` or a later one.
-    pub fn gather_from(&self, first: u32, p: DVec3, reach: f64, of: u32, kin: usize, near: &mut Vec<Neighbour>) {
-        near.clear();
-        let [x, y, z] = self.cell(p);
-        for dz in -1..=1 {
-            for dy in -1..=1 {
-                for dx in -1..=1 {
-                    let mut next = self.cells.get(&[x + dx, y + dy, z + dz]).copied().unwrap_or(NONE);
-                    // The last comes first.
-                    while next != NONE && next >= first {
-                        let twig = self.twigs[next as usize];
-                        if twig.distance(p, p) <= reach && self.ancestors(of, kin).all(|a| a != next) {
-                            near.push(Neighbour { twig, is_kin: self.is_kin(next, of, kin) });
-                        }
-                        next = twig.before;
-                    }
-                }
-            }
+    /// All that comes within `reach` of `p`, and a little more, with the number `first` or a later one, but for the node `of` and
+    /// its ancestors, as far as `kin` nodes back.
+    pub fn near(&self, first: u32, p: DVec3, reach: f64, of: u32, kin: usize) -> Near<'_> {
+        let own: Vec<u32> = self.ancestors(of).take(kin + 1).collect();
+        let ([x, y, z], ball) = (self.cell(p), Ball::new(p, p));
+        let mut twigs = Vec::new();
+        let around = || -1..=1;
+        for (dz, dy, dx) in around().flat_map(|dz| around().flat_map(move |dy| around().map(move |dx| (dz, dy, dx)))) {
+            let Some(cell) = self.cells.get(&[x + dx, y + dy, z + dz]) else { continue };
+            // The last come first.
+            let fresh = cell.iter().rev().take_while(|twig| twig.number >= first);
+            twigs.extend(fresh.filter(|twig| !twig.ball.is_beyond(&ball, reach) && !own.contains(&twig.number)));
         }
-    }
-
-    fn is_kin(&self, one: u32, other: u32, kin: usize) -> bool {
-        self.ancestors(one, kin).any(|a| self.ancestors(other, kin).any(|b| a == b))
+        Near { all: self, twigs, own }
     }
 }
 
@@ -137,7 +159,7 @@ mod tests {
             let [a, b, c, d] = [0, 3, 6, 9].map(|i| DVec3::new(p[i], p[i + 1], p[i + 2]));
             let mut all = Neighbourhood::new(9.0);
             all.add(c, d, None, 0, 0.0);
-            let found = all.twigs[0].distance(a, b);
+            let found = all.cells[&all.cell(d)][0].distance(a, b);
             let mut least = f64::INFINITY;
             for i in 0..=60 {
                 for j in 0..=60 {
@@ -146,6 +168,7 @@ mod tests {
                 }
             }
             prop_assert!(found <= least + 1e-9 && found > least - 0.12, "{} {}", found, least);
+            prop_assert!(!all.cells[&all.cell(d)][0].ball.is_beyond(&Ball::new(a, b), found));
         }
     }
 
@@ -157,14 +180,13 @@ mod tests {
         for i in 0..6 {
             parent = Some(all.add(at(f64::from(i) - 1.0), at(f64::from(i)), parent, i, 0.0));
         }
-        let stranger = all.add(at(5.0), at(6.0), None, NONE, 0.0);
+        let stranger = all.add(at(5.0), at(6.0), None, u32::MAX, 0.0);
         let sister = all.add(at(4.0), at(4.0) + DVec3::Y, Some(4), 9, 0.0);
-        let mut near = Vec::new();
-        all.gather(at(5.0), 3.5, 5, 2, &mut near);
+        let near = all.near(0, at(5.0), 3.5, 5, 2);
         // 5, 4 and 3 are its own; 2 is farther back; what leaves 4 is kin.
-        let mut found: Vec<(u32, bool)> = near.iter().map(|near| (near.twig.own, near.is_kin)).collect();
+        let mut found: Vec<(u32, bool)> = near.twigs.iter().map(|t| (all.own(t.number), near.is_kin(t))).collect();
         found.sort_unstable();
-        assert_eq!(found, [(2, false), (9, true), (NONE, false)]);
-        assert!(all.own(sister) == 9 && all.own(stranger) == NONE);
+        assert_eq!(found, [(2, false), (9, true), (u32::MAX, false)]);
+        assert!(all.own(sister) == 9 && all.own(stranger) == u32::MAX);
     }
 }
