@@ -97,6 +97,9 @@ impl DbmSpec {
         let mut fresh: Vec<(Node, Option<u32>)> = generators.iter().map(|&node| (node, None)).collect();
         let mut reached = None;
         while reached.is_none() && grown.len() < self.nodes as usize {
+            if let Some(field) = &mut field {
+                field.ground(&fresh.iter().map(|(node, _)| lattice.cell(*node)).collect::<Vec<_>>());
+            }
             for (node, parent) in fresh.drain(..) {
                 let at = grown.len() as u32;
                 known.insert(node, at);
@@ -125,8 +128,7 @@ impl DbmSpec {
             if reached.is_some() || candidates.is_empty() {
                 break;
             }
-            if let Some(field) = &mut field {
-                field.solve(grown.iter().map(|(node, _)| lattice.cell(*node)));
+            if let Some(field) = &field {
                 candidates.iter_mut().for_each(|c| c.potential = field.potential(lattice.cell(c.node)));
             }
             let chosen = candidates.swap_remove(self.choose(&candidates, random.random()));

@@ -3,6 +3,7 @@
 mod dbm;
 mod dla;
 mod laplace;
+mod multigrid;
 mod spec;
 
 pub(super) use spec::{DBM, DLA};

@@ -43,8 +43,8 @@ pub struct DbmSpec {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Solver {
-    /// Laplace's equation on the whole lattice after every node, by conjugate gradients with an incomplete Cholesky
-    /// factor, from the last solution on (Kim and Lin 2004, section 4). Endpoints have potential 1, borders insulate.
+    /// Laplace's equation on the lattice (Kim and Lin 2004, section 4): about every node that grows, and everywhere after every
+    /// sixteenth, by conjugate gradients with multigrid. Endpoints have potential 1, borders insulate.
     #[default]
     Grid,
     /// Point charges in free space, without a grid (Kim, Sewall, Sud and Lin 2007): fast, but endpoints attract nothing.
