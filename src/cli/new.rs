@@ -37,7 +37,9 @@ pub fn run(args: &NewArgs, console: &Console) -> Result<(), Failure> {
     }
     let mut files = vec![(own, with_new_paths(text, &reads).into_bytes())];
     for FileRead { path, .. } in reads {
-        let bytes = Folder::Embedded(PathBuf::new()).read(&slashed(&path)).map_err(Failure::Usage)?;
+        let bytes = Folder::Embedded(PathBuf::new())
+            .read(&slashed(&path))
+            .map_err(|error| Failure::Usage(error.to_string()))?;
         match std::fs::read(&path) {
             // Scenes share assets.
             Ok(old) if old == bytes => {}

@@ -1,5 +1,6 @@
 //! `render`: pictures of scenes.
 
+use std::fmt::Display;
 use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -42,7 +43,7 @@ pub fn run(args: &RenderArgs, threads: Option<usize>, console: &Console) -> Resu
             if args.sheet.is_none() {
                 continue;
             }
-            read_screen(path).map_err(|e| Failure::Usage(format!("cannot read {}: {e}", shown::path(path))))?
+            read_screen(path)?
         } else {
             let scene = jobs.load(job)?;
             let progress = console.progress(job.title());
@@ -116,13 +117,14 @@ fn is_whole(path: &Path) -> bool {
 }
 
 /// A picture that is there already, as a screen shows it.
-fn read_screen(path: &Path) -> Result<Rgba, String> {
+fn read_screen(path: &Path) -> Result<Rgba, Failure> {
+    let wrong = |reason: &dyn Display| Failure::Usage(format!("cannot read {}: {reason}", shown::path(path)));
     if !is_exr(path) {
-        return decode_png(&fs::read(path).map_err(|e| e.to_string())?).map_err(|e| e.to_string());
+        return decode_png(&fs::read(path).map_err(|e| wrong(&e))?).map_err(|e| wrong(&e));
     }
-    let file = File::open(path).map_err(|e| e.to_string())?;
-    to_screen(&decode_exr(BufReader::new(file)).map_err(|e| e.to_string())?, true)
-        .ok_or_else(|| "it has no channels R, G and B".to_owned())
+    let file = File::open(path).map_err(|e| wrong(&e))?;
+    let layers = decode_exr(BufReader::new(file)).map_err(|e| wrong(&e))?;
+    to_screen(&layers, true).ok_or_else(|| wrong(&"it has no channels R, G and B"))
 }
 
 /// A name for files and declarations: letters, digits, `_`, `-` and dots within.

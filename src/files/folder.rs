@@ -40,6 +40,36 @@ pub struct FileRead {
     pub path: PathBuf,
 }
 
+/// Why a file that a scene names cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot read `{name}`: {reason}")]
+pub struct ReadError {
+    /// Its name as it was written.
+    pub name: String,
+    /// Why not.
+    pub reason: Unreadable,
+}
+
+/// What is wrong with a file that cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum Unreadable {
+    /// It does not come with the program.
+    #[error("it is not among the embedded files")]
+    NotEmbedded,
+    /// It is not below a folder of [`Folder::Confined`].
+    #[error("it lies outside the folders that this scene may read")]
+    Outside,
+    /// A folder or a device.
+    #[error("it is not a file")]
+    NotAFile,
+    /// So many bytes.
+    #[error("it has {0} bytes, {MOST_BYTES} at most can be read")]
+    TooLarge(u64),
+    /// What the system says.
+    #[error("{0}")]
+    Io(#[from] std::io::Error),
+}
+
 impl Reads {
     /// The files asked for so far.
     #[must_use]
@@ -88,29 +118,30 @@ impl Folder {
     /// The bytes of the file called `name`.
     ///
     /// # Errors
-    /// A sentence with the name and the reason.
-    pub fn read(&self, name: &str) -> Result<Vec<u8>, String> {
-        let wrong = |reason: &dyn std::fmt::Display| format!("cannot read `{name}`: {reason}");
+    /// [`ReadError`].
+    pub fn read(&self, name: &str) -> Result<Vec<u8>, ReadError> {
+        self.bytes(name).map_err(|reason| ReadError { name: name.to_owned(), reason })
+    }
+
+    fn bytes(&self, name: &str) -> Result<Vec<u8>, Unreadable> {
         match self {
             Self::Recorded(folder, reads) => {
                 reads.add(FileRead { name: name.to_owned(), path: folder.path(name) });
-                folder.read(name)
+                folder.bytes(name)
             }
             Self::Embedded(folder) => inside(&folder.join(name))
                 .and_then(|path| SCENES.get_file(path))
                 .map(|file| file.contents().to_vec())
-                .ok_or_else(|| wrong(&"it is not among the embedded files")),
-            Self::Disk(folder) => read_file(&folder.join(name)).map_err(|reason| wrong(&reason)),
+                .ok_or(Unreadable::NotEmbedded),
+            Self::Disk(folder) => read_file(&folder.join(name)),
             Self::Confined(folder, allowed) => {
                 let place = folder.join(name).canonicalize();
                 // Whether something is there or not is told of what may be read alone.
                 let is_below = |name: &str| Path::new(name).components().all(|c| matches!(c, Component::Normal(_)));
                 match place {
-                    Ok(place) if allowed.iter().any(|root| place.starts_with(root)) => {
-                        read_file(&place).map_err(|reason| wrong(&reason))
-                    }
-                    Err(error) if is_below(name) => Err(wrong(&error)),
-                    _ => Err(wrong(&"it lies outside the folders that this scene may read")),
+                    Ok(place) if allowed.iter().any(|root| place.starts_with(root)) => read_file(&place),
+                    Err(error) if is_below(name) => Err(error.into()),
+                    _ => Err(Unreadable::Outside),
                 }
             }
         }
@@ -118,17 +149,17 @@ impl Folder {
 }
 
 /// The bytes of a file of reasonable size, or why not.
-fn read_file(path: &Path) -> Result<Vec<u8>, String> {
-    let meta = path.metadata().map_err(|error| error.to_string())?;
+fn read_file(path: &Path) -> Result<Vec<u8>, Unreadable> {
+    let meta = path.metadata()?;
     if !meta.is_file() {
-        return Err("it is not a file".to_owned());
+        return Err(Unreadable::NotAFile);
     }
     if meta.len() > MOST_BYTES {
-        return Err(format!("it has {} bytes, {MOST_BYTES} at most can be read", meta.len()));
+        return Err(Unreadable::TooLarge(meta.len()));
     }
     let mut bytes = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(MOST_BYTES).read_to_end(&mut bytes));
-    read.map(|_| bytes).map_err(|error| error.to_string())
+    File::open(path)?.take(MOST_BYTES).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// A path without `..`; `None` where it leads out.
@@ -214,9 +245,9 @@ mod tests {
         }
         let absolute = root.join("other/a");
         for name in ["../other/a", "../other/none", "out", "/dev/zero", "/none", absolute.to_str().unwrap()] {
-            assert!(mine.read(name).unwrap_err().contains("outside"), "{name}");
+            assert!(matches!(mine.read(name).unwrap_err().reason, Unreadable::Outside), "{name}");
         }
-        assert!(mine.read("none").unwrap_err().contains("No such file"));
+        assert!(matches!(mine.read("none").unwrap_err().reason, Unreadable::Io(_)));
         assert!(mine.of("sub/a").read("../../other/a").is_err() && mine.of("sub/a").read("../in").is_ok());
     }
 

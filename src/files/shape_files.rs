@@ -1,7 +1,7 @@
 //! The files that shapes name: sketches, meshes, fonts and pictures.
 
-use super::{Folder, decode_grey, decode_mesh, decode_sketch, letter_outlines};
-use crate::geom::{MeshParts, Rings, ShapeFiles, SketchLines, simplified};
+use super::{Folder, ReadError, decode_grey, decode_mesh, decode_sketch, letter_outlines};
+use crate::geom::{MeshParts, Rings, ShapeError, ShapeFiles, SketchLines, simplified};
 use crate::math::DVec2;
 use crate::raster::contours;
 
@@ -10,25 +10,29 @@ const FONT: &str = "fonts/DejaVuSans-Bold.ttf";
 /// Outlines of pictures are within this many pixels of where the brightness crosses the threshold.
 const SLACK: f64 = 0.1;
 
+impl From<ReadError> for ShapeError {
+    fn from(ReadError { name, reason }: ReadError) -> Self {
+        Self::file(&name, reason)
+    }
+}
+
 impl ShapeFiles for Folder {
-    fn sketch_lines(&self, file: &str) -> Result<SketchLines, String> {
-        let page = decode_sketch(&self.read(file)?).map_err(|error| format!("cannot read `{file}`: {error}"))?;
+    fn sketch_lines(&self, file: &str) -> Result<SketchLines, ShapeError> {
+        let page = decode_sketch(&self.read(file)?).map_err(|error| ShapeError::file(file, error))?;
         let square = |p: DVec2| DVec2::new(p.x * page.aspect, p.y);
         Ok(page.lines.iter().map(|(line, _)| line.iter().map(|&p| square(p)).collect()).collect())
     }
 
-    fn letters(&self, text: &str, file: Option<&str>) -> Result<Rings, String> {
+    fn letters(&self, text: &str, file: Option<&str>) -> Result<Rings, ShapeError> {
         let bytes = match file {
             Some(file) => self.read(file)?,
             None => Self::Embedded("".into()).read(FONT)?,
         };
-        letter_outlines(text, &bytes)
-            .map_err(|error| format!("cannot use the font `{}`: {error}", file.unwrap_or(FONT)))
+        letter_outlines(text, &bytes).map_err(|error| ShapeError::file(file.unwrap_or(FONT), error))
     }
 
-    fn picture_outlines(&self, file: &str, threshold: f64, bright: bool) -> Result<Rings, String> {
-        let wrong = |error: &str| format!("cannot use the picture `{file}`: {error}");
-        let grey = decode_grey(&self.read(file)?).map_err(|error| wrong(&error.to_string()))?;
+    fn picture_outlines(&self, file: &str, threshold: f64, bright: bool) -> Result<Rings, ShapeError> {
+        let grey = decode_grey(&self.read(file)?).map_err(|error| ShapeError::file(file, error))?;
         let [width, height] = grey.size();
         let sign = if bright { -1.0 } else { 1.0 };
         // All beyond the picture is outside, and a value just at the threshold is not on the line.
@@ -47,13 +51,13 @@ impl ShapeFiles for Folder {
             .collect();
         if rings.is_empty() {
             let what = if bright { "brighter" } else { "darker" };
-            return Err(wrong(&format!("nothing in it is {what} than {threshold}")));
+            return Err(ShapeError::file(file, format!("nothing in it is {what} than {threshold}")));
         }
         Ok(rings)
     }
 
-    fn mesh_parts(&self, file: &str) -> Result<MeshParts, String> {
-        let mesh = decode_mesh(file, &self.read(file)?).map_err(|error| format!("cannot read `{file}`: {error}"))?;
+    fn mesh_parts(&self, file: &str) -> Result<MeshParts, ShapeError> {
+        let mesh = decode_mesh(file, &self.read(file)?).map_err(|error| ShapeError::file(file, error))?;
         Ok((mesh.points, mesh.triangles))
     }
 }

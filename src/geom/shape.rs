@@ -410,24 +410,25 @@ mod tests {
 
     use super::super::shape_spec::{MeshParts, Rings, ShapeFiles, ShapeSpec, SketchLines};
     use super::*;
+    use crate::geom::ShapeError;
 
     struct NoFiles;
 
     impl ShapeFiles for NoFiles {
-        fn letters(&self, _: &str, _: Option<&str>) -> Result<Rings, String> {
-            Err("no files here".to_owned())
+        fn letters(&self, _: &str, _: Option<&str>) -> Result<Rings, ShapeError> {
+            Err(ShapeError::file("none", "no files here"))
         }
 
-        fn picture_outlines(&self, _: &str, _: f64, _: bool) -> Result<Rings, String> {
-            Err("no files here".to_owned())
+        fn picture_outlines(&self, _: &str, _: f64, _: bool) -> Result<Rings, ShapeError> {
+            Err(ShapeError::file("none", "no files here"))
         }
 
-        fn sketch_lines(&self, _: &str) -> Result<SketchLines, String> {
-            Err("no files here".to_owned())
+        fn sketch_lines(&self, _: &str) -> Result<SketchLines, ShapeError> {
+            Err(ShapeError::file("none", "no files here"))
         }
 
-        fn mesh_parts(&self, _: &str) -> Result<MeshParts, String> {
-            Err("no files here".to_owned())
+        fn mesh_parts(&self, _: &str) -> Result<MeshParts, ShapeError> {
+            Err(ShapeError::file("none", "no files here"))
         }
     }
 

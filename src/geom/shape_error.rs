@@ -6,9 +6,23 @@ use crate::math::DVec3;
 /// Why a shape as a scene writes it is no shape.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ShapeError {
-    /// What [`super::ShapeFiles`] says of a file or step, or a name that is not defined.
+    /// A name that is not defined, as [`unknown`](crate::math::unknown) says it.
     #[error("{0}")]
-    Lookup(String),
+    Unknown(String),
+    /// A file that cannot be read, or has nothing that a shape could be made of.
+    #[error("cannot read `{file}`: {reason}")]
+    File {
+        /// Its name.
+        file: String,
+        /// What is wrong.
+        reason: String,
+    },
+    /// There are no steps.
+    #[error("there is no step `{0}` here")]
+    NoStep(String),
+    /// A step that yields no solids.
+    #[error("step `{0}` grows limbs: only steps with `by.regions` are shapes")]
+    Limbs(String),
     /// A shape refers to itself.
     #[error("shape `{0}` is made of itself")]
     Circular(String),
@@ -77,6 +91,13 @@ pub enum ShapeError {
         /// What is wrong.
         error: OutlineError,
     },
+}
+
+impl ShapeError {
+    /// That `file` cannot be read.
+    pub fn file(file: &str, reason: impl ToString) -> Self {
+        Self::File { file: file.to_owned(), reason: reason.to_string() }
+    }
 }
 
 impl From<ShapeError> for String {

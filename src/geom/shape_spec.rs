@@ -235,34 +235,34 @@ pub trait ShapeFiles {
     /// The outlines of `text` in the font `file`, by default the embedded one, with an em of 1.
     ///
     /// # Errors
-    /// A sentence with the name and the reason.
-    fn letters(&self, text: &str, file: Option<&str>) -> Result<Rings, String>;
+    /// [`ShapeError`].
+    fn letters(&self, text: &str, file: Option<&str>) -> Result<Rings, ShapeError>;
 
     /// The outlines of the pixels darker than `threshold` (if `bright`, brighter) in the picture `file`, with a height of 1.
     ///
     /// # Errors
-    /// A sentence with the name and the reason.
-    fn picture_outlines(&self, file: &str, threshold: f64, bright: bool) -> Result<Rings, String>;
+    /// [`ShapeError`].
+    fn picture_outlines(&self, file: &str, threshold: f64, bright: bool) -> Result<Rings, ShapeError>;
 
     /// The index of the step called `name`, which yields solids, and the shape of its space.
     ///
     /// # Errors
-    /// A sentence with the name and the reason.
-    fn solid_step(&self, name: &str) -> Result<(usize, ShapeSpec), String> {
-        Err(format!("there is no step `{name}` here"))
+    /// [`ShapeError`].
+    fn solid_step(&self, name: &str) -> Result<(usize, ShapeSpec), ShapeError> {
+        Err(ShapeError::NoStep(name.to_owned()))
     }
 
     /// The strokes of the sketch `file`.
     ///
     /// # Errors
-    /// A sentence with the name and the reason.
-    fn sketch_lines(&self, file: &str) -> Result<SketchLines, String>;
+    /// [`ShapeError`].
+    fn sketch_lines(&self, file: &str) -> Result<SketchLines, ShapeError>;
 
     /// The triangles of the mesh `file`, z up.
     ///
     /// # Errors
-    /// A sentence with the name and the reason.
-    fn mesh_parts(&self, file: &str) -> Result<MeshParts, String>;
+    /// [`ShapeError`].
+    fn mesh_parts(&self, file: &str) -> Result<MeshParts, ShapeError>;
 }
 
 impl ShapeSpec {
@@ -322,7 +322,7 @@ impl ShapeLookup<'_> {
             return Err(ShapeError::TooDeep(MOST_DEPTH));
         }
         let spec = self.named.get(name);
-        let spec = spec.ok_or_else(|| ShapeError::Lookup(unknown("shape", name, self.named.keys())))?;
+        let spec = spec.ok_or_else(|| ShapeError::Unknown(unknown("shape", name, self.named.keys())))?;
         let before = self.solids;
         self.pending.push(name.to_owned());
         let shape = self.shape(spec);
@@ -377,18 +377,18 @@ impl ShapeLookup<'_> {
             SolidSpec::Sector { at, toward, angle, radius } => sector(*at, *toward, *angle, *radius)?,
             SolidSpec::Revolve { sketch, from, to } => self.revolved(sketch, *from, to.0)?,
             SolidSpec::Mesh { file } => {
-                let (points, triangles) = self.files.mesh_parts(file).map_err(ShapeError::Lookup)?;
+                let (points, triangles) = self.files.mesh_parts(file)?;
                 let mesh = ClosedMesh::new(points, triangles);
                 let mesh = mesh.map_err(|error| ShapeError::Mesh { file: file.clone(), error })?;
                 Solid::Mesh(Arc::new(mesh))
             }
             SolidSpec::Letters { text, font, size, at, depth } => {
-                let rings = self.files.letters(text, font.as_deref()).map_err(ShapeError::Lookup)?;
+                let rings = self.files.letters(text, font.as_deref())?;
                 let solid = outlined(&rings, *size, *at, *depth);
                 solid.map_err(|error| ShapeError::Letters { text: text.clone(), error })?
             }
             SolidSpec::Picture { file, height, at, threshold, bright, depth } => {
-                let rings = self.files.picture_outlines(file, *threshold, *bright).map_err(ShapeError::Lookup)?;
+                let rings = self.files.picture_outlines(file, *threshold, *bright)?;
                 let solid = outlined(&rings, *height, *at, *depth);
                 solid.map_err(|error| ShapeError::Picture { file: file.clone(), error })?
             }
@@ -412,7 +412,7 @@ impl ShapeLookup<'_> {
     fn revolved(&mut self, sketch: &str, from: Option<Point>, to: DVec3) -> Result<Solid, ShapeError> {
         let from = from.map_or(DVec3::ZERO, |p| p.0);
         let along = axis(from, to, "an axis")?;
-        let lines = self.files.sketch_lines(sketch).map_err(ShapeError::Lookup)?;
+        let lines = self.files.sketch_lines(sketch)?;
         let profile = Profile::outline(&lines, (to - from).length()).and_then(Profile::new);
         let profile = profile.map_err(|error| ShapeError::Sketch { file: sketch.to_owned(), error })?;
         Ok(Solid::Revolved { from, along, profile: Arc::new(profile) })
@@ -420,7 +420,7 @@ impl ShapeLookup<'_> {
 
     /// The placeholder of a step's solid.
     fn grown(&mut self, step: &str) -> Result<Solid, ShapeError> {
-        let (index, space) = self.files.solid_step(step).map_err(ShapeError::Lookup)?;
+        let (index, space) = self.files.solid_step(step)?;
         // No shape can have this name.
         let mark = format!("what `{step}` grows in");
         if self.pending.contains(&mark) {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::mistake::{Included, Mistake, Span};
 use super::tree::{Entry, Value, merge, parse};
-use crate::files::Folder;
+use crate::files::{Folder, ReadError};
 
 /// Files that include each other, one the next, at most.
 const MOST_DEPTH: usize = 16;
@@ -45,7 +45,7 @@ pub(super) fn include(root: &mut Entry, folder: &Folder, mistakes: &mut Vec<Mist
         }
         let text = match read(&folder, &name) {
             Ok(text) => text,
-            Err(message) => return mistakes.push(wrong(entry.span, message)),
+            Err(error) => return mistakes.push(wrong(entry.span, error.to_string())),
         };
         let file = Arc::new(Included { name: shown, text });
         let (base, found) = parse(&file.text, Some(&file));
@@ -64,12 +64,23 @@ fn wrong(span: Option<Span>, message: String) -> Mistake {
     Mistake { span, place: "include".to_owned(), message }
 }
 
-fn read(folder: &Folder, name: &str) -> Result<String, String> {
+/// Why a file cannot be included.
+#[derive(Debug, thiserror::Error)]
+enum IncludeError {
+    #[error("{0}")]
+    Read(#[from] ReadError),
+    #[error("cannot include `{0}`: it has {1} bytes, {MOST_BYTES} at most are read")]
+    TooLarge(String, usize),
+    #[error("cannot include `{0}`: it is not UTF-8 text")]
+    NotText(String),
+}
+
+fn read(folder: &Folder, name: &str) -> Result<String, IncludeError> {
     let bytes = folder.read(name)?;
     if bytes.len() > MOST_BYTES {
-        return Err(format!("cannot include `{name}`: it has {} bytes, {MOST_BYTES} at most are read", bytes.len()));
+        return Err(IncludeError::TooLarge(name.to_owned(), bytes.len()));
     }
-    String::from_utf8(bytes).map_err(|_| format!("cannot include `{name}`: it is not UTF-8 text"))
+    String::from_utf8(bytes).map_err(|_| IncludeError::NotText(name.to_owned()))
 }
 
 /// Adds to a scene what only its base gives.

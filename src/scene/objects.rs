@@ -6,11 +6,11 @@ use std::sync::Arc;
 use super::document::{ObjectSpec, TileSpec};
 use super::resolver::Resolver;
 use crate::assemble::{LeavesRecipe, ObjectRecipe};
-use crate::files::{Folder, decode_linear, decode_mesh, decode_sketch, leaf_names};
+use crate::files::{Folder, ReadError, SketchError, decode_linear, decode_mesh, decode_sketch, leaf_names};
 use crate::grow::{MethodSpec, Step};
 use crate::math::{DVec2, DVec3, Ref, unknown};
 use crate::model::{Instance, Material, Mesh};
-use crate::skin::{LeavesSpec, PaintSpec, Painting, Skin, ball_mesh, leaf_mesh};
+use crate::skin::{LeafError, LeavesSpec, PaintSpec, Painting, Skin, ball_mesh, leaf_mesh};
 
 /// More places of a tile than this are refused.
 const MOST_TILES: u64 = 100_000;
@@ -172,8 +172,23 @@ fn copies(spec: &ObjectSpec, at: DVec3) -> Vec<Instance> {
     copies.chain(tiles).collect()
 }
 
+/// Why a file or a name is no leaf.
+#[derive(Debug, thiserror::Error)]
+enum LeafFileError {
+    #[error("{0}")]
+    Unknown(String),
+    #[error("{0}")]
+    Read(#[from] ReadError),
+    #[error("cannot use `{0}` as a leaf: {1}")]
+    Sketch(String, SketchError),
+    #[error("cannot use `{0}` as a leaf: it has no closed outline")]
+    Open(String),
+    #[error("cannot use `{0}` as a leaf: {1}")]
+    Mesh(String, LeafError),
+}
+
 /// One leaf: a ball, a shape that comes with the program, or the outline in an SVG file beside the scene.
-fn leaf(shape: &str, fold: f64, folder: &Folder) -> Result<Mesh, String> {
+fn leaf(shape: &str, fold: f64, folder: &Folder) -> Result<Mesh, LeafFileError> {
     if shape == "ball" {
         return Ok(ball_mesh());
     }
@@ -181,12 +196,11 @@ fn leaf(shape: &str, fold: f64, folder: &Folder) -> Result<Mesh, String> {
         folder.read(shape)?
     } else {
         let own = Folder::Embedded("leaves".into()).read(&format!("{shape}.svg"));
-        own.map_err(|_| unknown("leaf", shape, leaf_names().iter()))?
+        own.map_err(|_| LeafFileError::Unknown(unknown("leaf", shape, leaf_names().iter())))?
     };
-    let wrong = |error: String| format!("cannot use `{shape}` as a leaf: {error}");
-    let page = decode_sketch(&bytes).map_err(|e| wrong(e.to_string()))?;
+    let page = decode_sketch(&bytes).map_err(|error| LeafFileError::Sketch(shape.to_owned(), error))?;
     let outline = page.lines.iter().find(|(_, is_closed)| *is_closed).map(|(line, _)| line);
-    let outline = outline.ok_or_else(|| wrong("it has no closed outline".to_owned()))?;
+    let outline = outline.ok_or_else(|| LeafFileError::Open(shape.to_owned()))?;
     let outline: Vec<DVec2> = outline.iter().map(|p| DVec2::new(p.x * page.aspect, p.y)).collect();
-    leaf_mesh(&outline, fold).map_err(|error| wrong(error.to_string()))
+    leaf_mesh(&outline, fold).map_err(|error| LeafFileError::Mesh(shape.to_owned(), error))
 }

@@ -7,7 +7,7 @@ use super::document::Scene;
 use super::mistake::Mistake;
 use super::tree::Entry;
 use crate::files::{Folder, decode_grey, decode_sketch};
-use crate::geom::{Bounds, MeshParts, Rings, Shape, ShapeFiles, ShapeSpec, SketchLines};
+use crate::geom::{Bounds, MeshParts, Rings, Shape, ShapeError, ShapeFiles, ShapeSpec, SketchLines};
 use crate::grow::{Expected, Lookup, MethodSpec, Sketched, Step, StepSpec};
 use crate::math::{DVec2, DVec3, Ref, unknown};
 use crate::raster::Grey;
@@ -19,32 +19,33 @@ struct Names<'a> {
 }
 
 impl ShapeFiles for Names<'_> {
-    fn letters(&self, text: &str, file: Option<&str>) -> Result<Rings, String> {
+    fn letters(&self, text: &str, file: Option<&str>) -> Result<Rings, ShapeError> {
         self.folder.letters(text, file)
     }
 
-    fn picture_outlines(&self, file: &str, threshold: f64, bright: bool) -> Result<Rings, String> {
+    fn picture_outlines(&self, file: &str, threshold: f64, bright: bool) -> Result<Rings, ShapeError> {
         self.folder.picture_outlines(file, threshold, bright)
     }
 
-    fn sketch_lines(&self, file: &str) -> Result<SketchLines, String> {
+    fn sketch_lines(&self, file: &str) -> Result<SketchLines, ShapeError> {
         self.folder.sketch_lines(file)
     }
 
-    fn mesh_parts(&self, file: &str) -> Result<MeshParts, String> {
+    fn mesh_parts(&self, file: &str) -> Result<MeshParts, ShapeError> {
         self.folder.mesh_parts(file)
     }
 
-    fn solid_step(&self, name: &str) -> Result<(usize, ShapeSpec), String> {
+    fn solid_step(&self, name: &str) -> Result<(usize, ShapeSpec), ShapeError> {
         let steps = &self.scene.grow;
-        let index = steps.keys().position(|key| key == name).ok_or_else(|| unknown("step", name, steps.keys()))?;
+        let index = steps.keys().position(|key| key == name);
+        let index = index.ok_or_else(|| ShapeError::Unknown(unknown("step", name, steps.keys())))?;
         let step = &steps[name];
         if !matches!(step.by, MethodSpec::Regions(_)) {
-            return Err(format!("step `{name}` grows limbs: only steps with `by.regions` are shapes"));
+            return Err(ShapeError::Limbs(name.to_owned()));
         }
         let of = step.space.as_ref().map_or("", |space| &space.name);
         let space = self.scene.space.get(of);
-        let space = space.ok_or_else(|| unknown("space", of, self.scene.space.keys()))?;
+        let space = space.ok_or_else(|| ShapeError::Unknown(unknown("space", of, self.scene.space.keys())))?;
         Ok((index, space.shape.clone()))
     }
 }
