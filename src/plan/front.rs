@@ -49,6 +49,11 @@ impl BucketWidth {
         (1 << self.shift) - 1
     }
 
+    /// Is the list of wanted nodes swept at the bucket at `base`?
+    pub fn is_swept(self, base: u32) -> bool {
+        base & SWEEP < 1 << self.shift
+    }
+
     /// The start of the bucket after the one at `base`.
     pub fn next(self, base: u32) -> u32 {
         base.wrapping_add(1 << self.shift)
@@ -84,7 +89,7 @@ impl WantedNodes {
         };
         while wanted.pop_if(|node| is_settled(node)).is_some() {}
         // Costs are compared modulo 2^32, so settled nodes must leave the list before they wrap.
-        if base & SWEEP < 1 << front.width.shift {
+        if front.width.is_swept(base) {
             wanted.retain(|node| !is_settled(node));
         }
         wanted.is_empty()

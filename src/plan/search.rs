@@ -259,7 +259,9 @@ fn run_alone<G: Graph>(
             settled += front.advance::<false>(base, &places[1..len], &mut buckets);
         }
         base = width.next(base);
-        if idle >= width.count() || end - u64::from(width.next(0)) > limit || wanted.is_done(front, base) {
+        // After an empty bucket no more are settled than before it.
+        let is_done = (idle == 0 || width.is_swept(base)) && wanted.is_done(front, base);
+        if is_done || idle >= width.count() || end - u64::from(width.next(0)) > limit {
             break;
         }
         if turn.is_multiple_of(1024) {
