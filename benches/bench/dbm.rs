@@ -1,8 +1,8 @@
 //! Lightning by path planning beside the dielectric breakdown model, on a lattice of 512 by 512.
 //!
-//! `cargo bench -- dbm` prints the seconds of each, for bolts of about as many segments: ours, the model as Kim and Lin
-//! (2004) solve it (conjugate gradients with an incomplete Cholesky factor, from the last solution on), and the fastest
-//! solver that is known for it, point charges without a grid (Kim et al. 2007), which knows no ground.
+//! `cargo bench -- dbm` prints the seconds of each, for bolts of about as many segments: ours, the model on the grid of Kim and
+//! Lin (2004) as `by.dbm` solves it, and the fastest solver that is known for it, point charges without a grid (Kim et al.
+//! 2007), which knows no ground.
 
 use std::time::Instant;
 
