@@ -150,7 +150,7 @@ mod tests {
         }
     }
 
-    /// In space too; what is behind a wall of forbidden cells is on its own.
+    /// In space too.
     #[test]
     fn is_linear_in_space() {
         let window = Window::new(DVec3::ZERO, DVec3::new(6.0, 9.0, 5.0), 1.0, 3).unwrap();
