@@ -52,7 +52,8 @@ impl Strokes {
         }
     }
 
-    /// The square of the distance of `p` from what is below a box of a level, or from segments below level 0, where that is less than `nearest`.
+    /// The square of the distance of `p` from what is below a box of a level, or from segments below level 0, where that is
+    /// less than `nearest`.
     fn nearer(&self, p: DVec3, level: usize, number: usize, nearest: f64) -> f64 {
         let first = number * GROUP;
         let Some(level) = level.checked_sub(1) else {

@@ -133,12 +133,17 @@ mod tests {
     use crate::math::Weights;
     use crate::math::{DVec3, Stream};
 
+    fn lattice(most: DVec3, neighbours: u32) -> Lattice {
+        let axes = if most.z > 0.0 { 3 } else { 2 };
+        let window = Window::new(DVec3::ZERO, most, 1.0, axes).unwrap();
+        let neighbours = Neighbours::try_from(neighbours).unwrap();
+        Lattice::plain(window, neighbours, &Stream::new(1, "plates"), Weights::default()).unwrap()
+    }
+
     /// Between a row at 0 and a row at 1 the potential is even in the distance.
     #[test]
     fn is_linear_between_plates() {
-        let window = Window::new(DVec3::ZERO, DVec3::new(12.0, 20.0, 0.0), 1.0, 2).unwrap();
-        let four = Neighbours::try_from(4).unwrap();
-        let lattice = Lattice::plain(window, four, &Stream::new(1, "plates"), Weights::default()).unwrap();
+        let lattice = lattice(DVec3::new(12.0, 20.0, 0.0), 4);
         let row = |y: u32| (0..13).map(move |x| [x, y, 0]).collect::<Vec<_>>();
         let low: Vec<Node> = row(0).into_iter().map(|at| lattice.node(at)).collect();
         let high = row(20).into_iter().map(|at| lattice.node(at));
@@ -153,9 +158,7 @@ mod tests {
     /// In space too.
     #[test]
     fn is_linear_in_space() {
-        let window = Window::new(DVec3::ZERO, DVec3::new(6.0, 9.0, 5.0), 1.0, 3).unwrap();
-        let six = Neighbours::try_from(6).unwrap();
-        let lattice = Lattice::plain(window, six, &Stream::new(1, "plates"), Weights::default()).unwrap();
+        let lattice = lattice(DVec3::new(6.0, 9.0, 5.0), 6);
         let plate = |y: u32| (0..7).flat_map(move |x| (0..6).map(move |z| [x, y, z]));
         let low: Vec<Node> = plate(0).map(|at| lattice.node(at)).collect();
         let mut laplace = Laplace::new(&lattice, &low, plate(9).map(|at| lattice.node(at)));
@@ -170,9 +173,7 @@ mod tests {
     /// [`TOLERANCE`] leaves.
     #[test]
     fn what_a_cell_changes_fades() {
-        let window = Window::new(DVec3::ZERO, DVec3::new(150.0, 150.0, 0.0), 1.0, 2).unwrap();
-        let eight = Neighbours::try_from(8).unwrap();
-        let lattice = Lattice::plain(window, eight, &Stream::new(1, "fades"), Weights::default()).unwrap();
+        let lattice = lattice(DVec3::new(150.0, 150.0, 0.0), 8);
         let cell = |[x, y]: [u32; 2]| lattice.cell(lattice.node([x, y, 0]));
         // A bolt that goes this way and that.
         let bolt: Vec<usize> = (0..80).map(|i| cell([75 + i / 7 % 3 * i % 5, 150 - i])).collect();

@@ -218,7 +218,8 @@ mod tests {
     }
 
     proptest! {
-        /// What is constant on the cells of the coarser level has the same energy there; a cycle takes the energy of the error away.
+        /// What is constant on the cells of the coarser level has the same energy there; a cycle takes more than half of the
+        /// error's away.
         #[test]
         fn levels_agree(
             size in [1..9_usize, 1..9_usize, 1..5_usize],
