@@ -72,6 +72,14 @@ impl Buckets {
         Taken { chunk, len: cursor - chunk }
     }
 
+    /// How many buckets from `from` on are empty, up to `most`; the first follows the last.
+    pub fn empties(&self, from: usize, most: usize) -> usize {
+        let (before, after) = self.cursors.split_at(from);
+        let after = &after[..most.min(after.len())];
+        let count = leading_empties(after);
+        if count < after.len() { count } else { count + leading_empties(&before[..before.len().min(most - count)]) }
+    }
+
     /// The next chunk of a popped bucket with its length, `None` at the end. The nodes start at 1.
     #[inline]
     pub fn next_chunk(&mut self, taken: &mut Taken) -> Option<([u32; CHUNK], usize)> {
@@ -95,5 +103,32 @@ impl Buckets {
         }
         let start = taken.chunk as usize;
         &self.pool[start + 1..start + taken.len as usize]
+    }
+}
+
+/// How many cursors at the start of `cursors` are those of empty buckets.
+fn leading_empties(cursors: &[u32]) -> usize {
+    // A block has no branch within, which suits vector instructions.
+    let is_empty = |block: &&[u32]| block.iter().fold(true, |all, &cursor| all & (cursor == EMPTY));
+    let whole = cursors.chunks_exact(CHUNK).take_while(is_empty).count() * CHUNK;
+    whole + cursors[whole..].iter().take_while(|&&cursor| cursor == EMPTY).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn empties_are_counted_round_the_end(full in proptest::collection::vec(0..512_usize, 0..4), from in 0..512_usize, most in 0..513_usize) {
+            let mut buckets = Buckets::new(512);
+            for &bucket in &full {
+                buckets.push_if(true, bucket, Node(7));
+            }
+            let expected = (0..most).take_while(|i| !full.contains(&((from + i) % 512))).count();
+            prop_assert_eq!(buckets.empties(from, most), expected);
+        }
     }
 }

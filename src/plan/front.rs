@@ -54,9 +54,19 @@ impl BucketWidth {
         base & SWEEP < 1 << self.shift
     }
 
+    /// How many buckets there are from the one at `base` to the next at which the list of wanted nodes is swept.
+    pub fn until_swept(self, base: u32) -> usize {
+        ((base.wrapping_neg() & SWEEP) >> self.shift) as usize
+    }
+
     /// The start of the bucket after the one at `base`.
     pub fn next(self, base: u32) -> u32 {
-        base.wrapping_add(1 << self.shift)
+        self.skip(base, 1)
+    }
+
+    /// The start of the bucket `count` after the one at `base`.
+    pub fn skip(self, base: u32, count: usize) -> u32 {
+        base.wrapping_add((count as u32) << self.shift)
     }
 }
 

@@ -107,6 +107,25 @@ pub(super) struct Later<'a> {
 impl Later<'_> {
     /// No generators.
     pub const NONE: Self = Self { nodes: &[], gives_way: false };
+
+    /// Takes those of costs below `end`, not wrapped, into the queue.
+    fn join<G: Graph>(&mut self, front: &Front<'_, G>, end: u64, buckets: &mut Buckets) {
+        let Front { graph, cells, width, start, .. } = *front;
+        let cost_in_cell = |cost: u64| u64::from(start) + (cost << graph.slot_bits());
+        while let Some((&(node, cost), rest)) =
+            self.nodes.split_first().filter(|(first, _)| cost_in_cell(first.1) < end)
+        {
+            self.nodes = rest;
+            // A wrapped cost; 0 would mean unreached.
+            let value = cost_in_cell(cost) as u32;
+            let old = cells.get(graph.cell(node));
+            if self.gives_way && old != 0 && (old.wrapping_sub(value) as i32) < 0 {
+                continue;
+            }
+            cells.set(graph.cell(node), if value == 0 { start } else { value });
+            buckets.push_if(true, width.bucket(value), node);
+        }
+    }
 }
 
 /// [`plan`] on `threads` threads; on one only if there are `later` generators.
@@ -219,12 +238,11 @@ impl GraphVisitor for Extension<'_> {
 fn run_alone<G: Graph>(
     front: &Front<'_, G>,
     mut buckets: Buckets,
-    later: Later<'_>,
+    mut later: Later<'_>,
     until: (WantedNodes, u64),
     progress: &Progress,
 ) -> Result<(usize, u64), Cancelled> {
     let (mut wanted, most) = until;
-    let Later { nodes: mut later, gives_way } = later;
     let Front { graph, cells, width, start, .. } = *front;
     let slot_bits = graph.slot_bits();
     let mut settled = 0;
@@ -235,22 +253,10 @@ fn run_alone<G: Graph>(
     let mut idle = 0;
     let limit = most.saturating_mul(1 << slot_bits).saturating_add(u64::from(start));
     for turn in 0_u32.. {
-        while let Some((&(node, cost), rest)) =
-            later.split_first().filter(|(first, _)| u64::from(start) + (first.1 << slot_bits) < end)
-        {
-            later = rest;
-            // A wrapped cost; 0 would mean unreached.
-            let value = (u64::from(start) + (cost << slot_bits)) as u32;
-            let old = cells.get(graph.cell(node));
-            if gives_way && old != 0 && (old.wrapping_sub(value) as i32) < 0 {
-                continue;
-            }
-            cells.set(graph.cell(node), if value == 0 { start } else { value });
-            buckets.push_if(true, width.bucket(value), node);
-        }
+        later.join(front, end, &mut buckets);
         end += u64::from(width.next(0));
         let mut taken = buckets.take(width.bucket(base));
-        idle = if later.is_empty() { idle + 1 } else { 0 };
+        idle = if later.nodes.is_empty() { idle + 1 } else { 0 };
         while let Some((places, len)) = buckets.next_chunk(&mut taken) {
             idle = 0;
             for &node in buckets.upcoming(&taken) {
@@ -259,6 +265,13 @@ fn run_alone<G: Graph>(
             settled += front.advance::<false>(base, &places[1..len], &mut buckets);
         }
         base = width.next(base);
+        // A field of costs can leave a million buckets between two nodes.
+        if idle > 0 {
+            let gap = buckets.empties(width.bucket(base), width.until_swept(base).min(width.count() - idle));
+            base = width.skip(base, gap);
+            end += (gap as u64) * u64::from(width.next(0));
+            idle += gap;
+        }
         // After an empty bucket no more are settled than before it.
         let is_done = (idle == 0 || width.is_swept(base)) && wanted.is_done(front, base);
         if is_done || idle >= width.count() || end - u64::from(width.next(0)) > limit {

@@ -124,6 +124,38 @@ fn costs_may_exceed_a_cell() {
     }
 }
 
+/// Weights from one end of a line to the other, 1 to a million: nearly all buckets are empty, over more than one turn of costs.
+#[test]
+fn costs_may_lie_far_apart() {
+    let window = Window { spacing: 1.0, origin: [0; 3], size: [600, 2, 1] };
+    let steep: Option<Field> = Some(([true, false, false], |p| FieldValue { sum: p.x * p.x / 4.0, factor: 1.0 }));
+    let lattice =
+        Lattice::new(window, joined(4), &Stream::new(1, "steep"), Weights { max: 10.0, alpha: 1.0 }, steep, None)
+            .unwrap();
+    let (root, end) = (lattice.node([0, 0, 0]), lattice.node([599, 1, 0]));
+    let expected = dijkstra(&lattice, &[root]);
+    let most = expected.values().copied().max().unwrap();
+    assert!(most >> (32 - lattice.slot_bits()) >= 2, "the test wants wraps: {most}");
+    let later = [(lattice.node([1, 0, 0]), 1 << 20)];
+    for goal in [Goal::Everything, Goal::Nodes(&[end, lattice.node([1, 1, 0])]), Goal::Within(most)] {
+        let plain = plan(&lattice, &[root], goal, &Progress::default()).unwrap();
+        assert_eq!(plain.cost(end), Some(expected[&end]));
+        let delayed = plan_from(&lattice, &[&later[..], &[(root, 0)]].concat(), goal, &Progress::default()).unwrap();
+        assert_eq!(delayed.cost(end), Some(expected[&end]));
+    }
+    // At more than half a wrap from it the first node would seem unsettled, were it still in the list.
+    let halfway = 1 << (31 - lattice.slot_bits());
+    let middle = (0..600).map(|x| lattice.node([x, 0, 0])).find(|node| expected[node] > halfway).unwrap();
+    let wanted = [lattice.node([1, 1, 0]), middle];
+    let early = plan(&lattice, &[root], Goal::Nodes(&wanted), &Progress::default()).unwrap();
+    // A bucket is no wider than the least weight.
+    let last = expected[&middle] + u64::from(lattice.weight_range().least);
+    assert!(early.settled() <= expected.values().filter(|cost| **cost <= last).count());
+    let half = plan(&lattice, &[root], Goal::Within(most / 2), &Progress::default()).unwrap();
+    let known = |&(node, &cost): &(&Node, &u64)| cost <= most / 2 && half.cost(*node) != Some(cost);
+    assert_eq!(expected.iter().find(known), None);
+}
+
 /// Windows onto one infinite lattice agree where they overlap.
 #[test]
 fn a_resize_keeps_weights() {
