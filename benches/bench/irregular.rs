@@ -61,7 +61,7 @@ pub fn run() -> Result<(), Failure> {
     let table = WeightTable::new(Weights::default(), 1.0, 0.0)?;
     let mut points = Vec::new();
     for side in [24.0, 51.0, 110.0, 237.0] {
-        let joining = Joining::Yao(Sectors::Orthants);
+        let joining = Joining::Yao { sectors: Sectors::Orthants, longest: f64::INFINITY };
         let plan = ScatterPlan { spacing: 1.0, keep: 1.0, is_plane: false, joining: &joining, fixed: &[], owner: None };
         let stream = Stream::new(1, "bench");
         let mut told = (0, 0, 0.0);

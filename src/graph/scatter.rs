@@ -19,7 +19,13 @@ const KEPT: u64 = u64::MAX;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Joining {
     /// The Yao graph: each node with the nearest in every sector around it.
-    Yao(Sectors),
+    Yao {
+        /// The sectors.
+        sectors: Sectors,
+        /// The nearest is joined if it is no farther than this, in spacings: infinite in the paper (2012, section 3.1), where edges
+        /// bridge what the volume leaves out.
+        longest: f64,
+    },
     /// The geometric graph: all pairs within this distance, in scene units.
     Radius(f64),
     /// Nodes of a triangular lattice, each with its six neighbours.
@@ -90,7 +96,7 @@ impl Joining {
     #[must_use]
     pub fn degree(&self, nodes: f64, spacing: f64, is_plane: bool) -> f64 {
         match self {
-            Self::Yao(_) => 12.0,
+            Self::Yao { .. } => 12.0,
             Self::Radius(reach) => {
                 let wide = reach / spacing;
                 let near = if is_plane { 2.6 * wide * wide } else { 3.2 * wide * wide * wide };
@@ -135,8 +141,8 @@ impl Scatter {
         let owners: Vec<u8> = plan.owner.map_or_else(Vec::new, |owner| positions.iter().map(|&p| owner(p)).collect());
         let owned = (!owners.is_empty()).then_some(&owners[..]);
         let (starts, ends) = match plan.joining {
-            Joining::Yao(sectors) => {
-                let near = NodeGrid::new(&positions, owned, apart * CELL).yao(sectors);
+            Joining::Yao { sectors, longest } => {
+                let near = NodeGrid::new(&positions, owned, apart * CELL).yao(sectors, longest * plan.spacing);
                 both_ways(positions.len(), |i| {
                     near[i * sectors.count()..(i + 1) * sectors.count()].iter().copied().filter(|&j| j != u32::MAX)
                 })
@@ -308,12 +314,16 @@ mod tests {
         Scatter::new(&plan, &Ball(1.0), &Stream::new(seed, "scatter")).unwrap()
     }
 
+    fn yao(sectors: Sectors) -> Joining {
+        Joining::Yao { sectors, longest: f64::INFINITY }
+    }
+
     /// The sample is a maximal Poisson-disc sample: against random probes, which are independent of cells.
     #[test]
     fn nodes_are_apart_and_leave_no_room() {
         for (is_plane, spacing) in [(false, 0.13), (true, 0.03), (false, 0.9), (true, 2.5)] {
             for seed in 0..3 {
-                let graph = scatter(spacing, is_plane, &Joining::Yao(Sectors::new(6, is_plane).unwrap()), seed);
+                let graph = scatter(spacing, is_plane, &yao(Sectors::new(6, is_plane).unwrap()), seed);
                 let nodes = graph.positions();
                 assert!((nodes[0].y - 0.4).abs() < 1e-12 && nodes.iter().all(|p| Ball(1.0).margin(*p) <= 0.0));
                 for (i, p) in nodes.iter().enumerate() {
@@ -337,7 +347,7 @@ mod tests {
     #[test]
     fn threads_make_no_difference() {
         let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let make = || scatter(0.06, false, &Joining::Yao(Sectors::Orthants), 5);
+        let make = || scatter(0.06, false, &yao(Sectors::Orthants), 5);
         let (one, two) = (pool(1).install(make), pool(2).install(make));
         assert_eq!(one.positions, two.positions);
         assert_eq!(one.ends, two.ends);
@@ -352,7 +362,7 @@ mod tests {
         #[test]
         fn yao_edges_equal_brute_force(
             points in prop::collection::vec(prop::array::uniform3(-9..9_i32), 2..400), far in prop::bool::ANY,
-            which in 0..5_usize, owned in prop::bool::ANY
+            which in 0..5_usize, owned in prop::bool::ANY, longest in prop::sample::select(vec![f64::INFINITY, 3.0])
         ) {
             let (sectors, is_plane) = [(3, true), (6, true), (6, false), (8, false), (24, false)][which];
             let sectors = Sectors::new(sectors, is_plane).unwrap();
@@ -365,11 +375,12 @@ mod tests {
             nodes.dedup();
             let owners: Vec<u8> = (0..nodes.len()).map(|i| if owned { (i % 3) as u8 } else { 0 }).collect();
             let joins = |i: usize, j: usize| i != j && (owners[i] == owners[j] || owners[i] * owners[j] == 0);
-            let found = NodeGrid::new(&nodes, Some(&owners), 1.7).yao(&sectors);
+            let found = NodeGrid::new(&nodes, Some(&owners), 1.7).yao(&sectors, longest);
             for i in 0..nodes.len() {
                 for sector in 0..sectors.count() {
                     let expected = (0..nodes.len())
                         .filter(|&j| joins(i, j) && sectors.of(nodes[j] - nodes[i]) == sector)
+                        .filter(|&j| nodes[j].distance(nodes[i]) <= longest)
                         .min_by(|&a, &b| {
                             nodes[a].distance_squared(nodes[i]).total_cmp(&nodes[b].distance_squared(nodes[i]))
                         });

@@ -136,11 +136,11 @@ impl<'a> NodeGrid<'a> {
         }
     }
 
-    /// The nearest node in each sector around node `i`; of equally near ones the first.
-    fn nearest(&self, i: u32, sectors: &Sectors) -> Best {
+    /// The nearest node in each sector around node `i`, no farther than `longest`; of equally near ones the first.
+    fn nearest(&self, i: u32, sectors: &Sectors, longest: f64) -> Best {
         let p = self.nodes[i as usize];
         let at = self.cell(p);
-        let mut best = [(f64::INFINITY, u32::MAX); Sectors::MOST];
+        let mut best = [(longest * longest, u32::MAX); Sectors::MOST];
         let rings = if self.levels.is_empty() { 2 * RINGS } else { RINGS };
         self.around(at, rings, |j| {
             let d = self.nodes[j as usize] - p;
@@ -201,13 +201,14 @@ impl<'a> NodeGrid<'a> {
         }
     }
 
-    /// The nearest node in each sector of each node: `sectors.count()` numbers a node, `u32::MAX` where there is none.
-    pub fn yao(&self, sectors: &Sectors) -> Vec<u32> {
+    /// The nearest node in each sector of each node, no farther than `longest`: `sectors.count()` numbers a node, `u32::MAX`
+    /// where there is none.
+    pub fn yao(&self, sectors: &Sectors, longest: f64) -> Vec<u32> {
         let count = sectors.count();
         let mut found = vec![u32::MAX; self.nodes.len() * count];
         let fill = |first: usize, rows: &mut [u32]| {
             for (row, i) in rows.chunks_mut(count).zip(first as u32..) {
-                let best = self.nearest(i, sectors);
+                let best = self.nearest(i, sectors, longest);
                 row.iter_mut().zip(best).for_each(|(to, (_, j))| *to = j);
             }
         };

@@ -74,6 +74,12 @@ fn bad_input_is_one_clear_error() {
         ),
         (
             "nodes.scatter = { spacing = 0.3 }\n[space.tuft]",
+            "nodes.scatter = { spacing = 0.3, radius = 0.4, longest = 3 }\n[space.tuft]",
+            "space.first.nodes.scatter",
+            "no `longest`",
+        ),
+        (
+            "nodes.scatter = { spacing = 0.3 }\n[space.tuft]",
             "nodes.scatter = { spacing = 0.001 }\n[space.tuft]",
             "space.first.nodes.scatter.spacing",
             "nodes are too many",

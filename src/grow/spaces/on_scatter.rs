@@ -152,7 +152,7 @@ impl PathSite for OnScatter<'_> {
     ) -> Result<Vec<Mark>, Problem> {
         let graph = self.graph();
         let sectors = match (&self.space.joining, &graph.nearest(&[middle(step)])[..]) {
-            (Joining::Yao(sectors), &[node]) => {
+            (Joining::Yao { sectors, .. }, &[node]) => {
                 let at = graph.position(node);
                 let reach = SECTOR_RAY * self.space.spacing;
                 sectors.rays().iter().map(|ray| vec![at, at + ray.extend(0.0) * reach]).collect()

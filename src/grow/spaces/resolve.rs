@@ -81,13 +81,17 @@ fn voxels(nodes: VoxelNodesSpec, spec: &SpaceSpec, common: Common, lookup: &mut 
 }
 
 fn scatter(nodes: ScatterSpec, spec: &SpaceSpec, common: Common, lookup: &mut dyn Lookup) -> Option<ScatterSpace> {
-    let ScatterSpec { spacing, sectors, radius, plane, keep } = nodes;
-    let joining = match (sectors, radius) {
-        (Some(_), Some(_)) => Err("nodes are joined either by `sectors` or within a `radius`".to_owned()),
-        (_, Some(radius)) => Ok(Joining::Radius(radius)),
-        (sectors, None) => {
+    let ScatterSpec { spacing, sectors, longest, radius, plane, keep } = nodes;
+    let joining = match (sectors, longest, radius) {
+        (Some(_), _, Some(_)) => Err("nodes are joined either by `sectors` or within a `radius`".to_owned()),
+        (_, Some(_), Some(_)) => {
+            Err("nodes are joined within a `radius`: it leaves no `longest` of a Yao graph".to_owned())
+        }
+        (_, _, Some(radius)) => Ok(Joining::Radius(radius)),
+        (sectors, longest, None) => {
             let sectors = Sectors::new(sectors.unwrap_or(if plane { 6 } else { 8 }), plane);
-            sectors.map(Joining::Yao).map_err(|error| error.to_string())
+            let longest = longest.unwrap_or(f64::INFINITY);
+            sectors.map(|sectors| Joining::Yao { sectors, longest }).map_err(|error| error.to_string())
         }
     };
     let joining = note(lookup, "nodes.scatter", joining)?;

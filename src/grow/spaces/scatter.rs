@@ -21,6 +21,11 @@ pub struct ScatterSpec {
     #[serde(default)]
     #[schemars(range(min = 3, max = 24))]
     pub sectors: Option<u32>,
+    /// Longest edge of the Yao graph, in spacings. By default edges are of any length (2012, section 3.1), and bridge what the shape
+    /// leaves out: trees leave it where it bends or parts.
+    #[serde(default)]
+    #[schemars(range(min = 1, max = 1e6))]
+    pub longest: Option<f64>,
     /// In place of the Yao graph: all nodes no farther apart than this are joined, in scene units, also where the space of
     /// a repeated step is scaled.
     #[serde(default)]
@@ -263,7 +268,7 @@ impl ScatterSpace {
 
     /// May ends share nodes? Not where something is forbidden, or joined by a length in the scene's units.
     pub(in crate::grow) fn is_alike(&self) -> bool {
-        self.forbid.is_none() && matches!(self.joining, Joining::Yao(_) | Joining::Triangular)
+        self.forbid.is_none() && matches!(self.joining, Joining::Yao { .. } | Joining::Triangular)
     }
 
     /// Nodes around an end, in the space's own coordinates; the first is the end. What is forbidden, in the scene's
