@@ -122,7 +122,9 @@ mod tests {
 
     proptest! {
         #[test]
-        fn empties_are_counted_round_the_end(full in proptest::collection::vec(0..512_usize, 0..4), from in 0..512_usize, most in 0..513_usize) {
+        fn empties_are_counted_round_the_end(
+            full in proptest::collection::vec(0..512_usize, 0..4), from in 0..512_usize, most in 0..513_usize
+        ) {
             let mut buckets = Buckets::new(512);
             for &bucket in &full {
                 buckets.push_if(true, bucket, Node(7));

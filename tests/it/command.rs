@@ -395,15 +395,15 @@ fn what_shows_its_construction_is_drawn() {
         .filter(|step| costs.contains(&format!("stroke=\"#{0:02x}{0:02x}{0:02x}\"", 70 + 160 * step / 7)))
         .count();
     assert_eq!(tones, 8, "edges have eight tones");
-    // Fig. 5 shows its 14 first endpoints with two of its objects, those of 14 subgraphs with one.
+    // Fig. 5 shows its 7 first endpoints with two of its objects, those of 7 subgraphs with one.
     let ends = |options: &[&str]| {
         let common = ["export", "papers/2012-fig05", "--to", "svg", "--name", "ends", "--show", "endpoints", "--quiet"];
         succeed_in(at, &[&common[..], options].concat());
         fs::read_to_string(at.join("ends.svg")).unwrap().matches("<circle").count()
     };
     let shown = ends(&[]);
-    assert_eq!(ends(&["--set", "object.graph.marks=false"]), shown - 14);
-    assert_eq!(ends(&["--set", "object.subgraphs.marks=false"]), shown - 14 * 7);
+    assert_eq!(ends(&["--set", "object.graph.marks=false"]), shown - 7);
+    assert_eq!(ends(&["--set", "object.subgraphs.marks=false"]), shown - 7 * 7);
     fails(at, &["export", "papers/2008-fig01", "--to", "svg", "--show", "sectors"], 2, &["Yao graphs in the plane"]);
 }
 

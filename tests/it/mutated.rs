@@ -65,6 +65,11 @@ const LOOK: Duration = Duration::from_millis(100);
 
 /// Scenes small enough that hundreds of them can be grown.
 fn small(text: &str) -> String {
+    // Nodes that are farther apart are joined farther.
+    let joined = |line: &str| {
+        if line.starts_with("nodes.scatter") { line.replace("radius = 0.", "radius = 2.") } else { line.to_owned() }
+    };
+    let text = text.lines().map(joined).collect::<Vec<_>>().join("\n");
     text.replace("spacing = 0.16", "spacing = 1.28")
         // What is replaced here is not replaced again.
         .replace("spacing = 0.00", "spacing=0.01")
