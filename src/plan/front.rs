@@ -51,7 +51,7 @@ impl BucketWidth {
 
     /// Is the list of wanted nodes swept at the bucket at `base`?
     pub fn is_swept(self, base: u32) -> bool {
-        base & SWEEP < 1 << self.shift
+        self.until_swept(base) == 0
     }
 
     /// How many buckets there are from the one at `base` to the next at which the list of wanted nodes is swept.
