@@ -16,7 +16,5 @@ pub fn check(recipe: &Recipe, memory: &Memory, progress: &Progress) -> Vec<Assem
         progress.check()?;
         Ok(step.check_places(&context)?)
     });
-    let camera = recipe.camera.check().map_err(AssembleError::Camera);
-    let camera = if recipe.view.is_none() { camera } else { Ok(()) };
-    checked.chain([camera]).filter_map(Result::err).collect()
+    checked.chain([recipe.check_camera()]).filter_map(Result::err).collect()
 }

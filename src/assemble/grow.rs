@@ -39,6 +39,7 @@ pub fn grow_related(
     progress: &Progress,
 ) -> Result<Vec<Grown>, AssembleError> {
     recipe.check()?;
+    recipe.check_camera()?;
     memory.ask(bytes_needed(recipe))?;
     let nothing = |step: &Step| Grown { name: step.name.clone(), ..Grown::default() };
     let steps = recipe.steps.iter().zip(related(&recipe.steps, wanted));

@@ -110,6 +110,11 @@ impl Recipe {
         Ok(())
     }
 
+    /// Refuses a camera that sees nothing. Where there is a view, it takes the camera's place.
+    pub(super) fn check_camera(&self) -> Result<(), AssembleError> {
+        if self.view.is_some() { Ok(()) } else { self.camera.check().map_err(AssembleError::Camera) }
+    }
+
     /// The material of limbs that have no other.
     #[must_use]
     pub fn bark() -> Material {

@@ -321,6 +321,23 @@ fn the_rest_of_the_command() {
     assert_eq!(output.status.code(), Some(1));
 }
 
+/// Where a scene does not grow, `--claims` tells every mistake, not the first alone; a camera that sees nothing among them.
+#[test]
+fn claims_tell_the_mistakes_that_check_tells() {
+    let folder = tempfile::tempdir().unwrap();
+    let outside = ["grow.plain.from.at=[[98, 99]]", "grow.erratic.from.at=[[99, 99]]"];
+    for (scene, wrong) in [("papers/2008-fig02", &outside[..]), ("elm", &["camera.at=[1, 1, 1]"])] {
+        let set: Vec<&str> = wrong.iter().flat_map(|&change| ["--set", change]).collect();
+        let [checked, claimed] = [&[][..], &["--claims"]].map(|more| {
+            let output = run_in(folder.path(), &[&["check", scene], more, &set].concat());
+            assert_eq!(output.status.code(), Some(2), "{scene}");
+            text(&output.stderr).to_owned()
+        });
+        assert_eq!(checked.matches(" x ").count(), wrong.len(), "{checked}");
+        assert_eq!(checked, claimed);
+    }
+}
+
 /// Over several seeds every claim is summed up: how often it held, and where it came nearest to failing.
 #[test]
 fn claims_are_summed_up_over_seeds() {
