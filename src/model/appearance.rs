@@ -169,7 +169,7 @@ pub enum Light {
 
 impl Light {
     /// A sun in the studio look is this much stronger than in the exact one, where constant light adds to it.
-    const SUN: f64 = 1.6;
+    pub(super) const SUN: f64 = 1.6;
 
     /// Its colour in the studio look: lights without shadow are left out, since the sky takes their place, but for those
     /// that fall off.
@@ -242,25 +242,6 @@ impl Ground {
 /// A ground fades from full to nothing over this share of its reach, from the outside.
 pub const FADE: f64 = 0.45;
 
-/// What is behind everything, as a scene writes it: one colour, a gradient, or a picture.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct SkySpec {
-    /// One colour all over.
-    pub colour: Option<Colour>,
-    /// Of a gradient: colour at the horizon and below.
-    pub horizon: Option<Colour>,
-    /// Of a gradient: colour overhead.
-    pub zenith: Option<Colour>,
-    /// An equirectangular picture of all directions (EXR or Radiance HDR), beside the scene.
-    pub file: Option<String>,
-    /// How far the picture is turned about the vertical.
-    pub turn: Degrees,
-    /// The picture's light times this.
-    #[schemars(range(min = 0.0, max = 1000.0))]
-    pub strength: Option<f64>,
-}
-
 /// What is behind everything.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sky {
@@ -279,6 +260,8 @@ pub enum Sky {
         turn: f64,
         /// Its light times this.
         strength: f64,
+        /// How much more it lights in the studio look than it shows: 1 for pictures, which are as bright as one likes.
+        light: f64,
     },
 }
 
@@ -297,7 +280,7 @@ impl Sky {
                 let t = direction.z.max(0.0);
                 Colour([0, 1, 2].map(|i| a[i] + (b[i] - a[i]) * t))
             }
-            Self::Picture { picture, turn, strength } => {
+            Self::Picture { picture, turn, strength, .. } => {
                 let turn = Degrees(*turn).radians();
                 let (sin, cos) = (libm::sin(turn), libm::cos(turn));
                 let d = DVec3::new(

@@ -34,7 +34,14 @@ impl Dome {
     #[must_use]
     pub fn light(&self, direction: DVec3) -> Colour {
         let Colour(light) = if direction.z < 0.0 { self.bounce } else { self.sky.colour(direction) };
-        Colour(light.map(|x| x.min(BRIGHTEST) * Self::STRENGTH))
+        let strength = if direction.z < 0.0 { Self::STRENGTH } else { self.strength() };
+        Colour(light.map(|x| x.min(BRIGHTEST) * strength))
+    }
+
+    /// What the sky's colour counts.
+    fn strength(&self) -> f64 {
+        let Sky::Picture { light, .. } = self.sky else { return Self::STRENGTH };
+        light * Self::STRENGTH
     }
 
     /// `count` parallel lights, spread evenly (a spherical Fibonacci lattice, Hannay and Nye 2004): directions towards
@@ -50,10 +57,10 @@ impl Dome {
                 let direction = from_height(z, GOLDEN_ANGLE * f64::from(i));
                 let Colour(light) = match &self.sky {
                     // A picture may change within a light's share of the sky.
-                    Sky::Picture { picture, turn, strength } if z >= 0.0 => {
+                    Sky::Picture { picture, turn, strength, .. } if z >= 0.0 => {
                         let about = super::Instance { at: DVec3::ZERO, turn: *turn, scale: 1.0 }.unturned(direction);
                         let most = BRIGHTEST / strength.max(1e-9);
-                        Colour(picture.mean(about, 1.0 - 2.0 / n, most).map(|x| x * strength * Self::STRENGTH))
+                        Colour(picture.mean(about, 1.0 - 2.0 / n, most).map(|x| x * strength * self.strength()))
                     }
                     _ => self.light(direction),
                 };

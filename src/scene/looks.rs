@@ -6,7 +6,7 @@ use super::resolver::Resolver;
 use crate::assemble::{Backdrop, Recipe};
 use crate::files::{decode_grey, decode_panorama, decode_plate, resize_grey, resize_plate};
 use crate::math::{Colour, Degrees};
-use crate::model::{Light, LightSpec, Material, Sky, SkySpec, ViewFrame, ViewSpec};
+use crate::model::{Daylight, Light, LightSpec, Material, Sky, SkySpec, ViewFrame, ViewSpec};
 
 impl Resolver<'_> {
     /// The view, and the size of the picture.
@@ -53,32 +53,43 @@ impl Resolver<'_> {
         materials.into_iter().collect()
     }
 
-    pub fn sky(&mut self, spec: &SkySpec) -> Option<Sky> {
+    /// The day that the sky is of, if it is.
+    pub fn daylight(&mut self) -> Option<Daylight> {
+        let spec = self.scene.sky.as_ref()?.daylight.as_ref()?;
+        self.note("sky.daylight", Daylight::new(spec))
+    }
+
+    pub fn sky(&mut self, spec: &SkySpec, daylight: Option<&Daylight>) -> Option<Sky> {
         let gradient = spec.horizon.is_some() || spec.zenith.is_some();
-        match (spec.colour, gradient, &spec.file) {
-            (Some(colour), false, None) => Some(Sky::plain(colour)),
-            (None, true, None) => {
+        let picture_alone = [("turn", spec.turn.0 != 0.0), ("strength", spec.strength.is_some())];
+        for (key, _) in picture_alone.iter().filter(|(_, given)| *given && spec.file.is_none()) {
+            self.wrong(&format!("sky.{key}"), format!("`{key}` is for a picture of the sky, `file`"));
+        }
+        match (spec.colour, gradient, &spec.file, spec.daylight) {
+            (Some(colour), false, None, None) => Some(Sky::plain(colour)),
+            (None, true, None, None) => {
                 let (Some(horizon), Some(zenith)) = (spec.horizon, spec.zenith) else {
                     self.wrong("sky", "a gradient needs both `horizon` and `zenith`".to_owned());
                     return None;
                 };
                 Some(Sky::Gradient { horizon, zenith })
             }
-            (None, false, Some(file)) => {
+            (None, false, Some(file), None) => {
                 let picture = Arc::new(self.read("sky.file", file, decode_panorama)?);
-                Some(Sky::Picture { picture, turn: spec.turn.0, strength: spec.strength.unwrap_or(1.0) })
+                Some(Sky::Picture { picture, turn: spec.turn.0, strength: spec.strength.unwrap_or(1.0), light: 1.0 })
             }
+            (None, false, None, Some(_)) => daylight.map(Daylight::sky),
             _ => {
-                let message = "a sky has exactly one of `colour`, `horizon` with `zenith`, and `file`";
+                let message = "a sky has exactly one of `colour`, `horizon` with `zenith`, `file` and `daylight`";
                 self.wrong("sky", message.to_owned());
                 None
             }
         }
     }
 
-    pub fn lights(&mut self, is_flat: bool) -> Vec<Light> {
+    pub fn lights(&mut self, is_flat: bool, daylight: Option<&Daylight>) -> Vec<Light> {
         if self.scene.light.is_empty() && !is_flat {
-            return Recipe::two_suns();
+            return daylight.map_or_else(Recipe::two_suns, |daylight| vec![daylight.sun(), daylight.fill()]);
         }
         let mut lights = Vec::new();
         for (name, spec) in &self.scene.light {

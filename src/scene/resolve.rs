@@ -125,13 +125,14 @@ impl Resolver<'_> {
         }
         let paper = Colour([if has_view { 0.0 } else { 1.0 }; 3]);
         let default = if is_flat { Sky::plain(paper) } else { Recipe::pale_sky() };
+        let daylight = self.daylight();
         Some(Seen {
             is_flat,
             objects: objects.into_iter().collect(),
             materials,
             camera: scene.camera.unwrap_or_else(if is_flat { CameraSpec::front } else { CameraSpec::default }),
-            lights: self.lights(is_flat),
-            sky: scene.sky.as_ref().map_or(Some(default), |spec| self.sky(spec)),
+            lights: self.lights(is_flat, daylight.as_ref()),
+            sky: scene.sky.as_ref().map_or(Some(default), |spec| self.sky(spec, daylight.as_ref())),
         })
     }
 

@@ -74,6 +74,13 @@ fn bad_scenes_get_one_clear_error() {
     bad("grow = [\"twig\"]", "mesh = \"none.obj\"", &["cannot read `none.obj`"]);
     bad("[grow.twig]", "[sky]\nhorizon = [1, 1, 1]\n[grow.twig]", &["both `horizon` and `zenith`"]);
     bad("[grow.twig]", "[sky]\ncolour = [1, 1, 1]\nfile = \"a.exr\"\n[grow.twig]", &["exactly one of `colour`"]);
+    let night = "[sky]\ndaylight = { latitude = 50, day = 172, hour = 23 }\n[grow.twig]";
+    bad("[grow.twig]", night, &["sky.daylight: at this hour the sun is", "below the horizon"]);
+    bad(
+        "[grow.twig]",
+        "[sky]\ncolour = [1, 1, 1]\nstrength = 2\n[grow.twig]",
+        &["sky.strength", "for a picture of the sky"],
+    );
     bad("[grow.twig]", "[sky]\nfile = \"a.exr\"\n[grow.twig]", &["sky.file", "cannot read `a.exr`"]);
     bad("[object.twig]", "[object.\"a\\nb\"]", &["is no name"]);
     bad("[object.twig]", "[object.\"../x\"]", &["is no name"]);

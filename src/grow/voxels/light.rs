@@ -2,12 +2,10 @@
 
 use super::spec::{LightSenseSpec, SunSpec};
 use crate::grow::rounds::sky;
-use crate::math::{DVec3, rotation};
+use crate::math::{DVec3, solar_direction};
 
 /// Rays to the sky stay this far above the horizon, in radians from the vertical.
 const OPEN: f64 = 1.45;
-/// The tilt of the Earth's axis, in degrees.
-const TILT: f64 = 23.44;
 
 /// How growth senses light.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,23 +21,10 @@ impl SunSpec {
     /// elsewhere.
     #[must_use]
     pub fn directions(&self) -> Vec<DVec3> {
-        let radians = |degrees: f64| degrees * (std::f64::consts::PI / 180.0);
-        // The solstice of December is ten days before the year begins.
-        let declination = -radians(TILT) * libm::cos(std::f64::consts::TAU * (self.day + 10.0) / 365.0);
-        let (sin_d, cos_d) = (libm::sin(declination), libm::cos(declination));
-        let (sin_l, cos_l) = (libm::sin(self.latitude.radians()), libm::cos(self.latitude.radians()));
         let [from, to] = self.hours;
         let steps = libm::ceil(to - from).max(0.0) as u32;
-        let north = rotation(DVec3::Z, self.north.radians());
-        let at = |i: u32| {
-            let hour = if steps == 0 { from } else { from + (to - from) * f64::from(i) / f64::from(steps) };
-            let angle = radians((hour - 12.0) * 15.0);
-            let (sin_h, cos_h) = (libm::sin(angle), libm::cos(angle));
-            let east = -cos_d * sin_h;
-            let northward = sin_d * cos_l - cos_d * sin_l * cos_h;
-            let up = sin_d * sin_l + cos_d * cos_l * cos_h;
-            north * DVec3::new(east, northward, up)
-        };
+        let hour = |i: u32| if steps == 0 { from } else { from + (to - from) * f64::from(i) / f64::from(steps) };
+        let at = |i: u32| solar_direction(self.latitude, self.day, hour(i), self.north);
         (0..=steps).map(at).filter(|way| way.z > 0.0).collect()
     }
 }
