@@ -1,6 +1,6 @@
 //! Sun and sky of a place, a day and an hour.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use hw_skymodel::rgb::{SkyParams, SkyState};
@@ -37,8 +37,8 @@ const ALBEDO: f32 = 0.2;
 /// Below this elevation, in radians, the sky passes into one colour all around: the last degrees of the model are a white line,
 /// which a ground that fades before the horizon would show whole.
 const HAZE: f64 = 0.07;
-/// Columns of the sky's picture; it has half as many rows.
-const COLUMNS: u32 = 384;
+/// Rows of the sky's picture.
+const ROWS: u32 = 192;
 
 /// Sun and sky of a day and an hour.
 #[derive(Clone, Debug)]
@@ -46,7 +46,10 @@ pub struct Daylight {
     towards: DVec3,
     /// Of the sky's model: nine numbers a channel, and its radiance.
     channels: [([f64; 9], f64); 3],
+    /// What of the sun's light reaches a surface that faces it.
     sun: [f64; 3],
+    /// What of the sky's light reaches a level surface.
+    level: [f64; 3],
     /// Brightness of what is shown, by that of the model.
     scale: f64,
 }
@@ -65,14 +68,11 @@ impl Daylight {
         let (elevation, turbidity) = (elevation as f32, spec.turbidity as f32);
         let state = SkyState::new(&SkyParams { elevation, turbidity, albedo: [ALBEDO; 3] });
         let (numbers, radiances) = state.map_err(|_| DaylightError::NoSky)?.raw();
-        let number = |x: f32| steady(x);
-        let channel = |c: usize| {
-            let own = std::array::from_fn(|i| number(numbers[9 * c + i]));
-            (own, number(radiances[c]))
-        };
-        let channels = [0, 1, 2].map(channel);
-        let mut daylight = Self { towards, channels, sun: sunlight(towards.z, spec.turbidity), scale: 1.0 };
-        daylight.scale = spec.exposure * WHITE * PI / (luminance(daylight.sun) + luminance(daylight.level()));
+        let own = |c: usize| (std::array::from_fn(|i| steady(numbers[9 * c + i])), steady(radiances[c]));
+        let sun = sunlight(towards.z, spec.turbidity);
+        let mut daylight = Self { towards, channels: [0, 1, 2].map(own), sun, level: [0.0; 3], scale: 1.0 };
+        daylight.level = daylight.level();
+        daylight.scale = spec.exposure * WHITE * PI / (luminance(sun) + luminance(daylight.level));
         Ok(daylight)
     }
 
@@ -87,36 +87,29 @@ impl Daylight {
     #[must_use]
     pub fn fill(&self) -> Light {
         let towards = DVec3::new(-self.towards.x, -self.towards.y, 0.7).normalize();
-        let colour = Colour(self.level().map(|x| x * self.scale / PI));
+        let colour = Colour(self.level.map(|x| x * self.scale / PI));
         Light::Sun { towards, colour, size: 0.0, shadow: false }
     }
 
     /// The sky, without the sun. In the studio look it is to the sun what it is in nature.
     #[must_use]
     pub fn sky(&self) -> Sky {
-        let rows = COLUMNS / 2;
-        let turn = |x: u32| PI * (2.0 * (f64::from(x) + 0.5) / f64::from(COLUMNS) - 1.0);
-        let seen = |rise: f64, x: u32| self.radiance(from_height(libm::sin(rise), turn(x))).map(|c| c * self.scale);
+        let seen = |turn: f64, rise: f64| self.radiance(from_height(libm::sin(rise), turn)).map(|c| c * self.scale);
         // A ground fades into the mean of all directions at the horizon: so does the sky, from the other side.
         let mut haze = [0.0; 3];
-        for x in 0..COLUMNS {
-            let light = seen(HAZE, x);
-            (0..3).for_each(|c| haze[c] += light[c] / f64::from(COLUMNS));
+        for x in 0..ROWS {
+            let light = seen(TAU * f64::from(x) / f64::from(ROWS), HAZE);
+            (0..3).for_each(|c| haze[c] += light[c] / f64::from(ROWS));
         }
-        let pixel = |i: u32| {
-            let rise = PI * (0.5 - (f64::from(i / COLUMNS) + 0.5) / f64::from(rows));
+        let picture = Panorama::painted(ROWS, |turn, rise| {
             let clear = (rise / HAZE).clamp(0.0, 1.0);
-            let light = seen(rise.max(HAZE), i % COLUMNS);
+            let light = seen(turn, rise.max(HAZE));
             [0, 1, 2].map(|c| (haze[c] + (light[c] - haze[c]) * clear) as f32)
-        };
-        let picture = Panorama::new(COLUMNS, rows, (0..COLUMNS * rows).map(pixel).collect());
+        });
         // A white surface scatters four fifths, so that what shines by itself is to be as much darker.
         let strength = Light::SUN * SCATTERED;
         let light = Light::SUN / (strength * Dome::STRENGTH);
-        match picture {
-            Some(picture) => Sky::Picture { picture: Arc::new(picture), turn: 0.0, strength, light },
-            None => Sky::plain(Colour([0.0; 3])),
-        }
+        Sky::Picture { picture: Arc::new(picture), turn: 0.0, strength, light }
     }
 
     /// Radiance from a direction of length 1 above the horizon (Hosek and Wilkie 2012, equations 8 and 9).
@@ -199,7 +192,7 @@ mod tests {
             let day = |turbidity: f64| {
                 let daylight = Daylight::new(&DaylightSpec { turbidity, ..at_height(degrees) }).unwrap();
                 assert!((daylight.towards.z - libm::sin(Degrees(degrees).radians())).abs() < 0.02);
-                (luminance(daylight.sun) * 0.683, luminance(daylight.level()) * 0.683)
+                (luminance(daylight.sun) * 0.683, luminance(daylight.level) * 0.683)
             };
             let sine = libm::sin(Degrees(degrees).radians());
             let (sun, sky) = (127.5 * libm::exp(-0.21 / sine), 0.8 + 15.5 * libm::sqrt(sine));
@@ -244,7 +237,7 @@ mod tests {
         let lights = Dome::new(&model).lights(400);
         let level = |c: usize| lights.iter().map(|(d, colour)| d.z.max(0.0) * colour.0[c]).sum::<f64>();
         let Colour(sun) = daylight.sun().studio();
-        let nature = daylight.level().into_iter().zip(daylight.sun);
+        let nature = daylight.level.into_iter().zip(daylight.sun);
         for (c, (sky_in_nature, sun_in_nature)) in nature.enumerate() {
             let (shown, expected) = (level(c) / sun[c], sky_in_nature / sun_in_nature);
             assert!((shown / expected - 1.0).abs() < 0.05, "{shown} {expected}");

@@ -20,6 +20,15 @@ impl Panorama {
         (fits && !pixels.is_empty()).then_some(Self { width, height, pixels })
     }
 
+    /// A picture of `rows` rows, at least one, and twice as many columns: the light from where each pixel's middle is, by its angle
+    /// from +x about the vertical and by its elevation, in radians.
+    #[must_use]
+    pub fn painted(rows: u32, light: impl Fn(f64, f64) -> [f32; 3]) -> Self {
+        let (width, height) = (2 * rows.max(1), rows.max(1));
+        let pixel = |i: u32| light(turn(i % width, width), rise(i / width, height));
+        Self { width, height, pixels: (0..width * height).map(pixel).collect() }
+    }
+
     /// Pixels in a row, and rows.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
@@ -72,14 +81,12 @@ impl Panorama {
     /// clamped to `most`.
     #[must_use]
     pub fn mean(&self, about: DVec3, cos: f64, most: f64) -> [f64; 3] {
-        let columns: Vec<[f64; 2]> = (0..self.width)
-            .map(|x| std::f64::consts::TAU * ((f64::from(x) + 0.5) / f64::from(self.width) - 0.5))
-            .map(|turn| [libm::cos(turn), libm::sin(turn)])
-            .collect();
+        let columns: Vec<[f64; 2]> =
+            (0..self.width).map(|x| turn(x, self.width)).map(|turn| [libm::cos(turn), libm::sin(turn)]).collect();
         let mut sum = [0.0; 3];
         let mut weight = 0.0;
         for y in 0..self.height {
-            let rise = std::f64::consts::PI * (0.5 - (f64::from(y) + 0.5) / f64::from(self.height));
+            let rise = rise(y, self.height);
             let (z, r) = (libm::sin(rise), libm::cos(rise));
             // The row does not intersect the cap.
             let flat = libm::sqrt((1.0 - about.z * about.z).max(0.0));
@@ -99,9 +106,29 @@ impl Panorama {
     }
 }
 
+/// The angle from +x about the vertical of column `x` of `width`.
+fn turn(x: u32, width: u32) -> f64 {
+    std::f64::consts::TAU * ((f64::from(x) + 0.5) / f64::from(width) - 0.5)
+}
+
+/// The elevation of row `y` of `height`.
+fn rise(y: u32, height: u32) -> f64 {
+    std::f64::consts::PI * (0.5 - (f64::from(y) + 0.5) / f64::from(height))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_painted_is_seen_where_it_was() {
+        let way = |turn: f64, rise: f64| crate::math::from_height(libm::sin(rise), turn);
+        let panorama = Panorama::painted(64, |turn, rise| way(turn, rise).to_array().map(|x| x as f32));
+        for (turn, rise) in [(0.0, 0.0), (1.0, 0.5), (-2.5, -0.8), (3.0, 1.2)] {
+            let seen = DVec3::from_array(panorama.at(way(turn, rise)));
+            assert!((seen - way(turn, rise)).length() < 2e-3, "{turn} {rise}: {seen}");
+        }
+    }
 
     #[test]
     fn directions_find_their_pixels() {
