@@ -6,7 +6,7 @@ use std::io;
 use crate::clock::median;
 use lichtenberg::export::{Origin, Pov, Templates};
 use lichtenberg::math::{Colour, DVec3, Stream};
-use lichtenberg::model::{Ball, Body, Camera, CameraSpec, Digits, Limbs, Material, Model, Object, Sky};
+use lichtenberg::model::{Ball, Body, Camera, CameraSpec, Digits, Limbs, Look, Material, Model, Object, Sky};
 use rand::RngExt;
 
 /// A chain of half a million balls that wanders through a box of 12 units, with a cone between each two.
@@ -35,6 +35,8 @@ fn million() -> Model {
         lights: Vec::new(),
         ground: None,
         sky: Sky::plain(grey),
+        air: None,
+        look: Look::Studio,
         marks: Vec::new(),
         strokes: Vec::new(),
     }

@@ -12,8 +12,8 @@ use crate::trees::tree;
 use lichtenberg::export::{Origin, Pov, Templates};
 use lichtenberg::files::{Rgba, encode_png};
 use lichtenberg::math::{Colour, DVec3, Progress, srgb_byte};
-use lichtenberg::model::{Ball, Body, Camera, Digits, Light, Limbs, Material, Model, Object, Projection, Sky};
-use lichtenberg::trace::{Look, RenderSettings, World, render};
+use lichtenberg::model::{Ball, Body, Camera, Digits, Light, Limbs, Look, Material, Model, Object, Projection, Sky};
+use lichtenberg::trace::{RenderSettings, World, render};
 use rayon::prelude::*;
 
 const SIZE: [u32; 2] = [1280, 720];
@@ -52,6 +52,8 @@ fn model(count: usize) -> Model {
         }],
         ground: None,
         sky: Sky::plain(Colour([0.7, 0.8, 0.9])),
+        air: None,
+        look: Look::Studio,
         marks: Vec::new(),
         strokes: Vec::new(),
     }

@@ -1,10 +1,10 @@
 //! Objects get their skin, and what grows on it.
 
-use super::{AssembleError, ObjectRecipe, Recipe};
+use super::{AssembleError, LeavesRecipe, ObjectRecipe, Recipe};
 use crate::geom::{Bounds, Surface};
 use crate::grow::{Grown, Regions, Space};
-use crate::math::{DVec3, Memory, Progress, Stream};
-use crate::model::{Body, BodyError, Instance, Material, Object, to_world};
+use crate::math::{Colour, DVec3, Memory, Progress, Stream};
+use crate::model::{Body, BodyError, Instance, Material, Object, Pose, to_world};
 use crate::skeleton::Skeleton;
 use crate::skin::{IsosurfaceSpec, Skin, by_level, cones, foot, isosurface, painted, spheres, surface_mesh, tubes};
 
@@ -39,18 +39,48 @@ pub(super) fn dress(
         let stream = Stream::new(scene.seed, &format!("leaves/{}/{}", recipe.name, leaves.name));
         let root = foot(skeletons).unwrap_or(DVec3::ZERO);
         let poses = leaves.spec.place(skeletons, root, digits, &stream).map_err(wrong)?;
-        let name = format!("{}_{}", recipe.name, leaves.name);
-        if poses.is_empty() {
-            continue;
+        for (name, poses, material) in in_groups(recipe, leaves, &poses, materials) {
+            let part = if recipe.skin.is_mesh() {
+                leaves.mesh.at_poses(&poses).and_then(|mesh| Object::of_mesh(&name, &mesh, first, material))
+            } else {
+                Object::of_poses(&name, &leaves.mesh, poses, first, digits, material)
+            };
+            parts.push(part.map_err(wrong)?);
         }
-        let part = if recipe.skin.is_mesh() {
-            leaves.mesh.at_poses(&poses).and_then(|mesh| Object::of_mesh(&name, &mesh, first, leaves.material))
-        } else {
-            Object::of_poses(&name, &leaves.mesh, poses, first, digits, leaves.material)
-        };
-        parts.push(part.map_err(wrong)?);
     }
     Ok(placed(scene, recipe, parts))
+}
+
+/// Leaves by their tints, where there are any: the name, poses and material of each group.
+fn in_groups(
+    recipe: &ObjectRecipe,
+    leaves: &LeavesRecipe,
+    poses: &[(Pose, u8)],
+    materials: &mut Vec<(String, Material)>,
+) -> Vec<(String, Vec<Pose>, usize)> {
+    let name = format!("{}_{}", recipe.name, leaves.name);
+    let kinds = match &leaves.spec.tints {
+        None => vec![(name, leaves.material)],
+        Some(tints) => {
+            let tinted = tints.groups().into_iter().map(|colour| tinted(materials, leaves.material, colour));
+            (1..).zip(tinted).map(|(i, material)| (format!("{name}_{i}"), material)).collect()
+        }
+    };
+    let groups = (0..).zip(kinds).map(|(group, (name, material))| {
+        let own = poses.iter().filter(|(_, of)| *of == group).map(|(pose, _)| *pose);
+        (name, own.collect(), material)
+    });
+    groups.filter(|(_, poses, _): &(_, Vec<Pose>, _)| !poses.is_empty()).collect()
+}
+
+/// The material `base` in another colour, by index.
+fn tinted(materials: &mut Vec<(String, Material)>, base: usize, colour: Colour) -> usize {
+    let name = format!("{} {}", materials[base].0, colour.hex());
+    let known = materials.iter().position(|(known, _)| *known == name);
+    known.unwrap_or_else(|| {
+        materials.push((name, Material { colour, ..materials[base].1 }));
+        materials.len() - 1
+    })
 }
 
 /// One surface around all limbs.
@@ -88,18 +118,8 @@ fn coloured(
             .map(|(level, part)| Object { material: of_level(level).copied().unwrap_or(recipe.material), ..part })
             .collect();
     };
-    let base = materials[recipe.material].clone();
-    let mut parts = Vec::new();
-    for (part, colour) in painted(&whole, picture, *steps, scene.is_flat) {
-        let name = format!("{} {}", base.0, colour.hex());
-        let known = materials.iter().position(|(known, _)| *known == name);
-        let index = known.unwrap_or_else(|| {
-            materials.push((name, Material { colour, ..base.1 }));
-            materials.len() - 1
-        });
-        parts.push(Object { material: index, ..part });
-    }
-    parts
+    let parts = painted(&whole, picture, *steps, scene.is_flat).into_iter();
+    parts.map(|(part, colour)| Object { material: tinted(materials, recipe.material, colour), ..part }).collect()
 }
 
 /// Adds the thorns of each part as a part of its own.

@@ -6,6 +6,7 @@
 mod check;
 mod dress;
 mod error;
+mod ground;
 mod grow;
 mod lights;
 mod memory;

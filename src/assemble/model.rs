@@ -1,18 +1,16 @@
 //! The model of a recipe from what its steps yielded.
 
 use super::dress::dress;
+use super::ground::lay;
 use super::lights::lights_along;
 use super::memory::{bytes_of, bytes_to_dress};
 use super::{AssembleError, Backdrop, ObjectRecipe, Recipe};
 use crate::geom::Mark;
 use crate::grow::Grown;
 use crate::math::{DVec3, Memory, Progress};
-use crate::model::{Camera, Ground, Material, Model, Object, Projection, to_world};
+use crate::model::{Camera, Model, Object, Projection, to_world};
 use crate::skeleton::Skeleton;
 use crate::skin::{Skin, stroke};
-
-/// The ground has faded into the horizon at this many times the camera's distance or the scene's size.
-const GROUND_REACH: f64 = 2.5;
 
 /// The model of `recipe` for a picture of `size` pixels within `memory`, `grown` being what its steps yielded.
 ///
@@ -37,6 +35,8 @@ pub fn model(
         lights: recipe.lights.clone(),
         ground: None,
         sky: recipe.sky.clone(),
+        air: recipe.air,
+        look: recipe.look,
         marks: marks(recipe, grown),
         strokes: Vec::new(),
     };
@@ -51,14 +51,8 @@ pub fn model(
         let drawn = model.marks.iter().flat_map(|m| m.line.iter().map(|&p| (p, 0.0)));
         model.camera = Camera::new(&recipe.camera, aspect, balls.chain(drawn)).map_err(AssembleError::Camera)?;
     }
-    let camera = model.camera;
-    let extent = model.bounds().size().max_element().max((camera.at - camera.look_at).length());
-    model.ground = recipe.ground.map(|ground| Ground {
-        material: Material::matt(ground.colour),
-        height: ground.height,
-        reach: extent * GROUND_REACH,
-        radius: ground.radius,
-    });
+    let memory = memory.beside(model.bytes() as u64);
+    lay(recipe, &mut model, &memory)?;
     Ok(model)
 }
 

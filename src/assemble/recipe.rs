@@ -8,7 +8,7 @@ use serde::Deserialize;
 use super::AssembleError;
 use crate::grow::{GrowError, Key, Problem, Step, waits_for_itself};
 use crate::math::{Colour, DVec3, Degrees};
-use crate::model::{CameraSpec, GlowSpec, GroundSpec, Instance, Light, Material, Mesh, Sky, ViewFrame};
+use crate::model::{Air, CameraSpec, GlowSpec, GroundSpec, Instance, Light, Look, Material, Mesh, Sky, ViewFrame};
 use crate::raster::{Grey, Plate};
 use crate::skin::{LeavesSpec, Painting, Skin, ThornsSpec};
 
@@ -64,6 +64,10 @@ pub struct Recipe {
     pub ground: Option<GroundSpec>,
     /// What is behind everything.
     pub sky: Sky,
+    /// Haze, if any.
+    pub air: Option<Air>,
+    /// How it is lit where nothing else is asked for.
+    pub look: Look,
 }
 
 impl Default for Recipe {
@@ -82,6 +86,8 @@ impl Default for Recipe {
             lights: Self::two_suns(),
             ground: None,
             sky: Self::pale_sky(),
+            air: None,
+            look: Look::Studio,
         }
     }
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, Parser, Subcommand};
 
-use super::choices::{Format, Look, MetricName, PlateOrigin, PlateSpace, Renderer, Shadows, Show};
+use super::choices::{Format, Look, MetricName, PlateOrigin, PlateSpace, Quality, Renderer, Shadows, Show};
 use super::place::{Place, parse_place};
 use crate::scene::Override;
 
@@ -114,14 +114,17 @@ pub struct RenderArgs {
     /// Show the picture in the terminal too; or, of a schematic, draw these marks of the construction
     #[arg(long, value_enum, value_delimiter = ',', value_name = "MARKS", num_args = 0..=1, default_missing_value = "terminal")]
     pub show: Vec<Show>,
-    /// How it is lit: studio (the default) has light from the whole sky and a soft sun, exact is POV-Ray's local light to the
-    /// pixel; a scene that is drawn as a schematic (`show`) is traced with either
+    /// How it is lit, in place of the scene's own look: studio has light from the whole sky and a soft sun, in natural that light
+    /// goes on from surface to surface and through leaves, exact is POV-Ray's local light to the pixel; a scene that is drawn as a schematic (`show`) is traced with either
     #[arg(long, value_enum, conflicts_with = "schematic")]
     pub look: Option<Look>,
-    /// Samples a pixel, 1 for its middle alone; 8 by default in the studio look, 9 in the exact one, where they are a
+    /// Samples a pixel, 1 for its middle alone; 8 by default, at most in the natural look, and 9 in the exact one, where they are a
     /// square grid, and the middle
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096), conflicts_with = "schematic")]
     pub samples: Option<u32>,
+    /// In place of samples: draft has 2, good 8, final 64; in the natural look POV-Ray follows scattered light by it, too
+    #[arg(long, value_enum, conflicts_with_all = ["samples", "schematic"])]
+    pub quality: Option<Quality>,
     /// Render this part of the picture only: left, top, width, height in pixels
     #[arg(long, value_name = "X,Y,W,H", value_parser = parse_crop, conflicts_with = "schematic")]
     pub crop: Option<[u32; 4]>,

@@ -83,6 +83,54 @@ pub enum Look {
     Studio,
     /// What POV-Ray shows, to the pixel: sharp shadows, constant ambient light
     Exact,
+    /// The studio's lights, which go on from surface to surface and through leaves
+    Natural,
+}
+
+impl Look {
+    /// As the tracer calls it.
+    pub fn traced(self) -> crate::model::Look {
+        match self {
+            Self::Studio => crate::model::Look::Studio,
+            Self::Exact => crate::model::Look::Exact,
+            Self::Natural => crate::model::Look::Natural,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Quality {
+    /// To try things
+    Draft,
+    /// To look at
+    Good,
+    /// To keep
+    Final,
+}
+
+impl Quality {
+    /// What metadata call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Draft => "draft",
+            Self::Good => "good",
+            Self::Final => "final",
+        }
+    }
+
+    /// Samples a pixel of our own preview, and of an outside renderer.
+    pub fn samples(self) -> u32 {
+        match self {
+            Self::Draft => 2,
+            Self::Good => 8,
+            Self::Final => 64,
+        }
+    }
+
+    /// What scenes of POV-Ray call it.
+    pub fn level(self) -> u32 {
+        self as u32
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -5,21 +5,22 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::args::RenderArgs;
-use super::choices::{Look, Renderer};
+use super::choices::{self, Renderer};
 use super::console::Console;
 use super::error::Failure;
 use super::jobs::{Job, Jobs};
 use super::memory::ask_beside;
-use super::preview::{Drawn, Means, means, samples, shine, trace, view};
+use super::preview::{Drawn, Means, means, shine, trace, view};
 use super::write::{read_templates, write_pov, write_rib};
 use super::{memory, output};
 use crate::export::{Origin, Pov, Rib, RibOptions, RibShadows, SvgOptions, Templates, write_svg};
 use crate::files::{Rgba, Scratch, decode_light, decode_png, draw_svg};
 use crate::geom::MarkKind;
 use crate::math::{Memory, Progress};
-use crate::model::Model;
+use crate::model::{Look, Model};
 use crate::render::{Povray, RibRenderer};
 use crate::scene::Loaded;
+use crate::trace::RenderSettings;
 
 pub fn report(path: &Path, jobs: &Jobs, job: &Job, scene: &Loaded, begun: Instant, console: &Console) {
     let details = serde_json::json!({
@@ -47,9 +48,11 @@ pub fn checked_means(args: &RenderArgs, scene: &Loaded, data: bool) -> Result<Me
     }
     let given = [
         ("--samples", args.samples.is_some()),
+        ("--quality", args.quality.is_some()),
         ("--crop", args.crop.is_some()),
         ("--transparent", args.transparent),
-        ("--look exact", args.look == Some(Look::Exact)),
+        ("--look exact", args.look == Some(choices::Look::Exact)),
+        ("--look natural", args.look == Some(choices::Look::Natural)),
         ("--bits 16", is_schematic && args.bits == "16"),
         ("EXR", is_schematic && data),
     ];
@@ -84,21 +87,21 @@ pub fn draw(
             shine(scene, &model.strokes, &jobs.memory, progress).map(Drawn::Shone)
         }
         Means::Preview => {
-            let view = view(args, scene.recipe.size, data, &jobs.memory)?;
+            let view = view(args, scene, data, &jobs.memory)?;
             let model = jobs.model(scene, &[], console, progress)?;
             trace(&model, &view, &jobs.memory, progress)
         }
         Means::Outside(renderer) => {
-            let view = view(args, scene.recipe.size, data, &jobs.memory)?;
-            let model = jobs.model(scene, &[], console, progress)?;
+            let view = view(args, scene, data, &jobs.memory)?;
+            let model = Model { look: view.look, ..jobs.model(scene, &[], console, progress)? };
             let templates = read_templates(args.templates.as_deref())?;
             let folder = Scratch::new()
                 .map_err(|e| Failure::Usage(format!("cannot make a folder for the renderer's files: {e}")))?;
             let origin = job.origin(scene.recipe.seed, "render");
             let files = Files { model: &model, templates: &templates, folder: folder.path(), origin: &origin };
-            let size = scene.recipe.size;
+            let size = view.size;
             let picture = match renderer {
-                Renderer::Povray => files.render_pov(args, size, view.crop, threads, console, progress),
+                Renderer::Povray => files.render_pov(args, &view, threads, console, progress),
                 Renderer::Pixie => files.render_rib(RibRenderer::Pixie, size, &jobs.memory, progress),
                 Renderer::Aqsis => files.render_rib(RibRenderer::Aqsis, size, &jobs.memory, progress),
             }?;
@@ -144,18 +147,21 @@ impl Files<'_> {
     fn render_pov(
         &self,
         args: &RenderArgs,
-        size: [u32; 2],
-        crop: [u32; 4],
+        view: &RenderSettings,
         threads: Option<usize>,
         console: &Console,
         progress: &Progress,
     ) -> Result<Rgba, Failure> {
-        let pov = Pov::new(self.model, self.templates, SCENE, size, self.origin);
+        let pov = Pov::new(self.model, self.templates, SCENE, view.size, self.origin);
         let povray = Povray {
-            size,
-            crop,
-            samples: libm::round(libm::sqrt(f64::from(samples(args)))) as u32,
-            declare: (args.look == Some(Look::Exact)).then(|| format!("{}=1", pov.exact())),
+            size: view.size,
+            crop: view.crop,
+            samples: libm::round(libm::sqrt(f64::from(view.samples))) as u32,
+            declares: match (view.look, args.quality) {
+                (Look::Exact, _) => vec![format!("{}=1", pov.exact())],
+                (Look::Natural, Some(quality)) => vec![format!("{}={}", pov.quality(), quality.level())],
+                _ => vec![],
+            },
             threads,
         };
         write_pov(&pov, self.folder, SCENE, true)?;

@@ -4,19 +4,17 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::args::RenderArgs;
-use super::choices::{Look, Renderer};
+use super::choices::{self, Quality, Renderer};
 use super::error::Failure;
 use super::output;
 use crate::files::{Rgba, encode_png};
 use crate::glow::{Pass, ShineError};
 use crate::math::{Memory, Progress};
-use crate::model::{Model, Stroke};
+use crate::model::{Look, Model, Stroke};
 use crate::picture::{self, Depth, Shone, ShoneError, Traced};
 use crate::scene::Loaded;
-use crate::trace::{self, RenderSettings, World};
+use crate::trace::{RenderSettings, World};
 
-/// Samples a pixel where none are asked for, in the studio and the exact look.
-const SAMPLES: [u32; 2] = [8, 9];
 /// Bytes that a pixel takes while it is traced; and with all that an EXR keeps of it.
 const FILM_BYTES: [u64; 2] = [32, 164];
 /// The same while it is written, when the scene is gone: of an EXR also layers, these once more, and what they are packed to.
@@ -56,21 +54,20 @@ pub fn means(args: &RenderArgs, scene: &Loaded) -> Means {
     }
 }
 
-/// The look as the tracer calls it.
-pub fn look(args: &RenderArgs) -> trace::Look {
-    match args.look {
-        None | Some(Look::Studio) => trace::Look::Studio,
-        Some(Look::Exact) => trace::Look::Exact,
-    }
+/// The look that is asked for, or else the scene's.
+pub fn look(args: &RenderArgs, scene: &Loaded) -> Look {
+    args.look.map_or(scene.recipe.look, choices::Look::traced)
 }
 
 /// Samples a pixel.
-pub fn samples(args: &RenderArgs) -> u32 {
-    args.samples.unwrap_or(SAMPLES[usize::from(args.look == Some(Look::Exact))])
+pub fn samples(args: &RenderArgs, look: Look) -> u32 {
+    let of_quality = args.quality.map(Quality::samples);
+    args.samples.or(of_quality).unwrap_or(if look == Look::Exact { 9 } else { Quality::Good.samples() })
 }
 
-/// What is asked for of a picture of `size`, within `memory`; `data` keeps what an EXR holds besides colours.
-pub fn view(args: &RenderArgs, size: [u32; 2], data: bool, memory: &Memory) -> Result<RenderSettings, Failure> {
+/// What is asked for of a picture of `scene`, within `memory`; `data` keeps what an EXR holds besides colours.
+pub fn view(args: &RenderArgs, scene: &Loaded, data: bool, memory: &Memory) -> Result<RenderSettings, Failure> {
+    let size = scene.recipe.size;
     let crop = args.crop.unwrap_or([0, 0, size[0], size[1]]);
     let [x, y, width, height] = crop;
     let fits = |from: u32, length: u32, whole: u32| from.checked_add(length).is_some_and(|end| end <= whole);
@@ -85,11 +82,12 @@ pub fn view(args: &RenderArgs, size: [u32; 2], data: bool, memory: &Memory) -> R
             "a picture of {width} by {height} pixels needs {error}: render it in parts, with --crop, or raise --max-memory"
         ))
     })?;
+    let look = look(args, scene);
     Ok(RenderSettings {
         crop,
         transparent: args.transparent,
         data,
-        ..RenderSettings::new(size, look(args), samples(args))
+        ..RenderSettings::new(size, look, samples(args, look))
     })
 }
 
@@ -221,8 +219,9 @@ fn how(args: &RenderArgs, scene: &Loaded) -> serde_json::Value {
         "renderer": renderer,
         "size": scene.recipe.size,
         "crop": args.crop,
-        "look": if look(args) == trace::Look::Studio { "studio" } else { "exact" },
-        "samples": samples(args),
+        "look": look(args, scene).name(),
+        "quality": args.quality.map(Quality::name),
+        "samples": samples(args, look(args, scene)),
         "transparent": args.transparent,
     })
 }

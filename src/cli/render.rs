@@ -92,7 +92,7 @@ fn check(args: &RenderArgs, outputs: &[PathBuf]) -> Result<(), Failure> {
 /// Tells that RIB has one look, where another is asked for.
 fn note_look(args: &RenderArgs, console: &Console) {
     if matches!(args.with, Some(Renderer::Pixie | Renderer::Aqsis)) && args.look != Some(Look::Exact) {
-        console.note("note: RIB shows the exact look (--look exact); the studio look is the preview's and POV-Ray's");
+        console.note("note: RIB shows the exact look (--look exact); others are the preview's and POV-Ray's");
     }
 }
 

@@ -182,7 +182,7 @@ fn once(
     if checked_means(args, &scene, is_exr(output))? != Means::Preview {
         return finish(draw(args, &jobs, job, &scene, is_exr(output), threads, console, progress)?);
     }
-    let fine = view(args, scene.recipe.size, is_exr(output), &jobs.memory)?;
+    let fine = view(args, &scene, is_exr(output), &jobs.memory)?;
     let model = jobs.model(&scene, &[], console, progress)?;
     let less = |x: u32| (x / COARSE).max(1);
     let size = fine.size.map(less);

@@ -32,6 +32,12 @@ impl<'a> Pov<'a> {
         format!("{}_Exact", self.values.prefix)
     }
 
+    /// The identifier of how much the natural look spends: 0, 1 or 2.
+    #[must_use]
+    pub fn quality(&self) -> String {
+        format!("{}_Quality", self.values.prefix)
+    }
+
     /// The identifiers declared: the prefix, or one an object.
     pub fn identifiers(&self) -> impl Iterator<Item = &str> {
         self.values.objects.iter().map(|object| object.id.as_str())

@@ -8,7 +8,7 @@ use super::identifier::{identifier, part_identifier, plain};
 use super::pov_text::{PLAIN, colour, to_pov};
 use crate::math::DVec3;
 use crate::model::{
-    Body, Camera, Digits, Dome, FADE, Ground, Instance, Light, Material, Model, Pattern, Projection, Sky,
+    Body, Camera, Digits, Dome, FADE, Ground, Instance, Light, Look, Material, Model, Pattern, Projection, Sky,
 };
 
 /// With more primitives than this the scene takes the objects inline, since `object { Name }` copies a union.
@@ -34,9 +34,15 @@ pub(super) struct PovValues {
     pub materials: Vec<MaterialValues>,
     camera: CameraValues,
     lights: Vec<LightValues>,
-    /// Towards the light, and its colour: the sky of the studio look.
+    /// The look besides the exact one.
+    look: &'static str,
+    /// Of the natural look: how light goes on.
+    natural: Option<NaturalValues>,
+    /// Of the studio look: towards the light, and its colour.
     dome: Vec<[String; 2]>,
     sky: SkyValues,
+    /// Of haze: how far one sees, and its height.
+    air: Option<[String; 2]>,
     ground: Option<GroundValues>,
 }
 
@@ -61,6 +67,7 @@ pub(super) struct MaterialValues {
     colour: String,
     ambient: String,
     diffuse: String,
+    through: String,
     emission: String,
     specular: String,
     roughness: String,
@@ -109,6 +116,20 @@ struct SkyValues {
 }
 
 #[derive(Serialize)]
+struct NaturalValues {
+    /// Is it about leaves, which light goes through?
+    leafy: bool,
+    /// Light from below the horizon.
+    bounce: String,
+    /// What the sky's colour counts as light.
+    strength: String,
+    /// No direction brings more light.
+    brightest: String,
+    /// Distance of the sky that is seen.
+    far: String,
+}
+
+#[derive(Serialize)]
 struct GroundValues {
     height: String,
     colour: String,
@@ -117,6 +138,7 @@ struct GroundValues {
     reach: String,
     fade: String,
     radius: Option<String>,
+    pattern: Option<PatternValues>,
 }
 
 /// What stands for the body of object `i` in a filled-in template; no scene text can contain it.
@@ -136,7 +158,9 @@ pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin)
     let extent = if bounds.is_empty() { 1.0 } else { bounds.size().max_element() };
     let digits = Digits::for_size(extent);
     let point = |p: DVec3| vector(to_pov(p), digits);
-    let dome = Dome::new(model).lights(DOME).into_iter();
+    let dome = Dome::new(model);
+    let is_natural = model.look == Look::Natural;
+    let lights = if is_natural { Vec::new() } else { dome.lights(DOME) };
     PovValues {
         version: env!("CARGO_PKG_VERSION"),
         stem: plain(name),
@@ -156,8 +180,11 @@ pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin)
             .collect(),
         camera: camera_values(&model.camera, digits),
         lights: model.lights.iter().map(|light| light_values(light, extent, &point)).collect(),
-        dome: dome.map(|(towards, c)| [vector(to_pov(towards), PLAIN), colour(c)]).collect(),
+        look: if is_natural { "natural" } else { "studio" },
+        natural: is_natural.then(|| natural_values(model, &dome, extent, digits)),
+        dome: lights.into_iter().map(|(towards, c)| [vector(to_pov(towards), PLAIN), colour(c)]).collect(),
         sky: sky_values(&model.sky),
+        air: model.air.map(|air| [number(air.clear, digits), number(air.height, digits)]),
         ground: model.ground.as_ref().map(|ground| ground_values(ground, digits)),
         prefix,
     }
@@ -197,6 +224,7 @@ fn material_values(id: String, m: &Material) -> MaterialValues {
         colour: colour(m.colour),
         ambient: number(m.ambient, PLAIN),
         diffuse: number(m.diffuse, PLAIN),
+        through: number(m.through, PLAIN),
         emission: number(m.emission, PLAIN),
         specular: number(m.specular, PLAIN),
         roughness: number(m.roughness, PLAIN),
@@ -226,6 +254,17 @@ fn sky_values(sky: &Sky) -> SkyValues {
     }
 }
 
+fn natural_values(model: &Model, dome: &Dome, extent: f64, digits: Digits) -> NaturalValues {
+    let ground = model.ground.as_ref().map_or(0.0, |ground| ground.reach);
+    NaturalValues {
+        leafy: model.objects.iter().any(|object| model.materials[object.material].1.through > 0.0),
+        bounce: colour(dome.light(DVec3::NEG_Z)),
+        strength: number(dome.strength(), PLAIN),
+        brightest: number(Dome::BRIGHTEST * dome.strength(), PLAIN),
+        far: number(2.0 * ground.max(extent * 50.0), digits),
+    }
+}
+
 fn ground_values(ground: &Ground, digits: Digits) -> GroundValues {
     GroundValues {
         height: number(ground.height, digits),
@@ -235,6 +274,7 @@ fn ground_values(ground: &Ground, digits: Digits) -> GroundValues {
         reach: number(ground.reach, digits),
         fade: number(FADE, PLAIN),
         radius: ground.radius.map(|radius| number(radius, digits)),
+        pattern: ground.material.pattern.as_ref().map(|pattern| pattern_values(&ground.material, pattern)),
     }
 }
 

@@ -7,6 +7,7 @@ use std::io::{self, Write};
 use super::rib_body::write_object;
 use super::rib_options::RibOptions;
 use super::rib_sheets::sheet_bytes_needed;
+use super::rib_surface::is_leaf;
 use super::rib_values::{RibValues, has_casters, values};
 use super::{Origin, TemplateError, Templates};
 use crate::model::{Body, Light, Limbs, Model, Object, Pattern};
@@ -53,7 +54,7 @@ impl<'a> Rib<'a> {
 
     /// The files that [`Self::shaders`] may name.
     pub fn shader_files() -> impl Iterator<Item = String> {
-        ["thorns", "fadepoint"].into_iter().chain(Pattern::NAMES).map(|name| format!("{name}.sl"))
+        ["thorns", "fadepoint", "leaf"].into_iter().chain(Pattern::NAMES).map(|name| format!("{name}.sl"))
     }
 
     /// The shaders that the scene uses and no renderer has, by file name: they must be compiled.
@@ -69,6 +70,9 @@ impl<'a> Rib<'a> {
         }
         if self.model.lights.iter().any(|light| matches!(light, Light::Point { .. })) {
             names.insert("fadepoint", None);
+        }
+        if objects().any(|object| is_leaf(object, &self.model.materials[object.material].1)) {
+            names.insert("leaf", None);
         }
         let laid = objects().filter(|object| object.body.limbs().is_some());
         let patterns = laid.filter_map(|object| self.model.materials[object.material].1.pattern);

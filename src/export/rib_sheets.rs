@@ -97,7 +97,7 @@ fn ground(model: &Model, size: [u32; 2], digits: Digits) -> Option<Sheet> {
     };
     let light = light_above(model);
     let material = &ground.material;
-    let (Colour(own), Colour(horizon)) = (material.colour, model.sky.at_horizon());
+    let (Colour(own), Colour(horizon)) = (material.mean_colour(), model.sky.at_horizon());
     let lit = |i: usize| (material.ambient + material.diffuse * light[i]).max(1e-3);
     let mut grid = Grid::default();
     let mut far: f64 = 0.0;

@@ -13,7 +13,7 @@ const PHONG: f64 = 4.0;
 /// The surface of an object.
 pub(super) fn surface(object: &Object, m: &Material) -> String {
     let is_laid = matches!(object.body, Body::Limbs(_));
-    let Some(pattern) = m.pattern.filter(|_| is_laid) else { return plain(m) };
+    let Some(pattern) = m.pattern.filter(|_| is_laid) else { return plain(m, is_leaf(object, m)) };
     let figure = pattern.figure();
     let [size, mean] = [figure.size(), figure.mean()].map(|x| number(x, PLAIN));
     format!(
@@ -25,13 +25,23 @@ pub(super) fn surface(object: &Object, m: &Material) -> String {
     )
 }
 
-fn plain(m: &Material) -> String {
+/// Does it let light through, which no standard shader does?
+pub(super) fn is_leaf(object: &Object, m: &Material) -> bool {
+    m.through > 0.0 && (m.pattern.is_none() || object.body.limbs().is_none())
+}
+
+fn plain(m: &Material, is_leaf: bool) -> String {
     let Colour(c) = m.mean_colour();
     if m.diffuse == 0.0 && m.ambient == 0.0 {
         return format!("Color [{}]\nSurface \"constant\"", colour(Colour(c.map(|c| c * m.emission))));
     }
-    let shader = if shine(m) > 0.0 { "plastic" } else { "matte" };
-    format!("Color [{}]\nSurface \"{shader}\" {}", colour(Colour(c)), light(m).join(" "))
+    let through = if is_leaf { format!(" \"float Kt\" [{}]", number(m.through, PLAIN)) } else { String::new() };
+    let shader = match is_leaf {
+        true => "leaf",
+        false if shine(m) > 0.0 => "plastic",
+        false => "matte",
+    };
+    format!("Color [{}]\nSurface \"{shader}\" {}{through}", colour(Colour(c)), light(m).join(" "))
 }
 
 fn shine(m: &Material) -> f64 {

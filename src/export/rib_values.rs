@@ -33,6 +33,8 @@ pub(super) struct RibValues {
     maps: Vec<MapValues>,
     /// Sky and ground.
     sheets: Vec<Sheet>,
+    /// Of haze: how far one sees, and its colour.
+    air: Option<[String; 2]>,
     /// Where shadows are traced: what is nearer casts none.
     ray_bias: Option<String>,
     /// Linear light with 16 bits a channel?
@@ -105,6 +107,7 @@ pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin,
         lights,
         maps,
         sheets,
+        air: model.air.map(|air| [number(air.clear, digits), colour(model.sky.at_horizon())]),
         ray_bias: (options.shadows == RibShadows::Rays).then(|| number(extent * RAY_BIAS, digits)),
         linear: options.linear,
         casters: if has_casters(model, options) { "casters" } else { "archive" },

@@ -8,12 +8,13 @@ use minijinja::{AutoEscape, Environment, UndefinedBehavior};
 use serde::Serialize;
 
 /// The embedded templates by file name.
-const EMBEDDED: [(&str, &str); 7] = [
+const EMBEDDED: [(&str, &str); 8] = [
     ("scene.inc", include_str!("../../templates/scene.inc")),
     ("scene.pov", include_str!("../../templates/scene.pov")),
     ("scene.ini", include_str!("../../templates/scene.ini")),
     ("scene.rib", include_str!("../../templates/scene.rib")),
     ("thorns.sl", include_str!("../../templates/thorns.sl")),
+    ("leaf.sl", include_str!("../../templates/leaf.sl")),
     ("pattern.sl", include_str!("../../templates/pattern.sl")),
     ("fadepoint.sl", include_str!("../../templates/fadepoint.sl")),
 ];

@@ -9,8 +9,8 @@ use include_dir::{Dir, include_dir};
 
 static SCENES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/scenes");
 
-/// Files that scenes name are here: nothing in it is a scene.
-const ASSETS: &str = "assets";
+/// Files that scenes name are here: nothing in them is a scene.
+const ASSETS: [&str; 2] = ["assets", "stages"];
 /// No file of a scene is larger than this.
 const MOST_BYTES: u64 = 256 << 20;
 
@@ -185,12 +185,34 @@ pub fn embedded_scenes() -> Vec<(String, &'static str, Folder)> {
                 out.push((name.replace('\\', "/"), text, Folder::Embedded(folder)));
             }
         }
-        dir.dirs().filter(|dir| dir.path() != Path::new(ASSETS)).for_each(|dir| visit(dir, out));
+        dir.dirs()
+            .filter(|dir| ASSETS.iter().all(|assets| dir.path() != Path::new(assets)))
+            .for_each(|dir| visit(dir, out));
     }
     let mut scenes = Vec::new();
     visit(&SCENES, &mut scenes);
     scenes.sort_by(|a, b| a.0.cmp(&b.0));
     scenes
+}
+
+/// The text of the stage called `name` that comes with the program.
+#[must_use]
+pub fn embedded_stage(name: &str) -> Option<&'static str> {
+    let file = stages().find(|file| file.path().file_stem().is_some_and(|stem| stem == name))?;
+    file.contents_utf8()
+}
+
+/// The names of the stages that come with the program.
+#[must_use]
+pub fn stage_names() -> Vec<String> {
+    let mut names: Vec<String> =
+        stages().filter_map(|file| Some(file.path().file_stem()?.to_str()?.to_owned())).collect();
+    names.sort();
+    names
+}
+
+fn stages() -> impl Iterator<Item = &'static include_dir::File<'static>> {
+    SCENES.get_dir("stages").into_iter().flat_map(Dir::files)
 }
 
 /// The names of the leaf shapes that come with the program.
@@ -254,6 +276,7 @@ mod tests {
     #[test]
     fn assets_are_no_scenes() {
         let scenes = embedded_scenes();
-        assert!(scenes.len() > 100 && scenes.iter().all(|(name, ..)| !name.starts_with(ASSETS)));
+        assert!(scenes.len() > 100);
+        assert!(scenes.iter().all(|(name, ..)| ASSETS.iter().all(|assets| !name.starts_with(assets))));
     }
 }

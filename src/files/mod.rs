@@ -24,7 +24,9 @@ pub use atomic_write::{write_atomic, write_bytes};
 pub use checksum::{is_edited, seal};
 pub use cryptomatte::add_mattes;
 pub use extent::{Extent, picture_extent};
-pub use folder::{FileRead, Folder, ReadError, Reads, Unreadable, embedded_scenes, leaf_names};
+pub use folder::{
+    FileRead, Folder, ReadError, Reads, Unreadable, embedded_scenes, embedded_stage, leaf_names, stage_names,
+};
 pub use inputs::Inputs;
 pub use mesh::{MeshError, decode_mesh, decode_obj, decode_ply};
 pub use picture::{

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::Pattern;
+use super::{GrassSpec, Pattern};
 use crate::math::{Colour, DVec3, Degrees, Point};
 use crate::raster::Panorama;
 
@@ -23,6 +23,10 @@ pub struct Material {
     #[serde(default = "diffuse")]
     #[schemars(range(min = 0.0, max = 10.0))]
     pub diffuse: f64,
+    /// Share of the lamps' light that goes through and is scattered beyond, as by a leaf: for what is thin.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub through: f64,
     /// Light of its own, as a multiple of its colour.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1000.0))]
@@ -72,6 +76,7 @@ impl Material {
             colour,
             ambient: ambient(),
             diffuse: diffuse(),
+            through: 0.0,
             emission: 0.0,
             specular: 0.0,
             roughness: roughness(),
@@ -92,6 +97,12 @@ impl Material {
     pub fn blend(&self, share: f64) -> Colour {
         let Colour(over) = self.pattern.map_or(self.colour, |pattern| pattern.figure().colour());
         Colour([0, 1, 2].map(|i| self.colour.0[i] + (over[i] - self.colour.0[i]) * share))
+    }
+
+    /// Does it show a light that falls on it at an angle of this cosine to its normal, negative from behind?
+    #[must_use]
+    pub fn shows(&self, facing: f64) -> bool {
+        facing > 0.0 || (facing < 0.0 && self.through > 0.0)
     }
 
     /// Drawing ink: its own colour under every light.
@@ -209,6 +220,17 @@ pub struct GroundSpec {
     #[serde(default)]
     #[schemars(range(min = -1e6, max = 1e6))]
     pub height: f64,
+    /// What is drawn over its colour: where limbs have their way, it has its height.
+    #[serde(default)]
+    pub pattern: Option<Pattern>,
+    /// Distance from the origin where it has faded into the horizon, in scene units; by default two and a half times the size of what
+    /// is seen.
+    #[serde(default)]
+    #[schemars(range(min = 1e-3, max = 1e9))]
+    pub reach: Option<f64>,
+    /// Grass on it.
+    #[serde(default)]
+    pub grass: Option<GrassSpec>,
     /// A round ground of this radius about the origin; without it the ground goes on, and fades into the horizon.
     #[serde(default)]
     #[schemars(range(min = 1e-3, max = 1e6))]

@@ -7,6 +7,10 @@ use crate::math::{DVec3, Degrees, Point};
 
 /// Room left around what is fitted, as a share of the picture.
 const MARGIN: f64 = 0.06;
+/// How often a camera at a height is fitted anew: each time its height is wrong by about a tenth of what it was.
+const TURNS: u32 = 6;
+/// The sine of the greatest angle by which such a camera looks up or down.
+const STEEPEST: f64 = 0.9;
 
 /// A camera as a scene writes it: given by `at` and `look_at`, or else turned to an angle and fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
@@ -20,6 +24,9 @@ pub struct CameraSpec {
     pub turn: Degrees,
     /// Without `at`: how far above the level it looks from.
     pub rise: Degrees,
+    /// Without `at`: its height in scene units, as that of a person's eye, in place of `rise`.
+    #[schemars(range(min = -1e6, max = 1e6))]
+    pub eye: Option<f64>,
     /// Horizontal angle of view; 0 for a parallel view.
     pub angle: Degrees,
     /// Without `at`: share of extra room around what is fitted.
@@ -29,7 +36,15 @@ pub struct CameraSpec {
 
 impl Default for CameraSpec {
     fn default() -> Self {
-        Self { at: None, look_at: None, turn: Degrees(0.0), rise: Degrees(4.0), angle: Degrees(30.0), room: 0.0 }
+        Self {
+            at: None,
+            look_at: None,
+            turn: Degrees(0.0),
+            rise: Degrees(4.0),
+            eye: None,
+            angle: Degrees(30.0),
+            room: 0.0,
+        }
     }
 }
 
@@ -40,6 +55,7 @@ impl CameraSpec {
     /// [`CameraError`].
     pub fn check(&self) -> Result<(), CameraError> {
         match (self.at, self.look_at) {
+            (None, None) if self.eye.is_some() && self.angle.radians() <= 0.0 => Err(CameraError::FlatEye),
             (None, None) => Ok(()),
             (Some(_), None) => Err(CameraError::LooksNowhere),
             (None, Some(_)) => Err(CameraError::StandsNowhere),
@@ -68,6 +84,9 @@ pub enum CameraError {
     /// The top of the picture would be anywhere.
     #[error("a camera must not look straight up or down, or at its own place")]
     Upright,
+    /// A parallel view is from nowhere.
+    #[error("a camera with `eye` needs an `angle` above 0")]
+    FlatEye,
     /// A parallel view is fitted, not placed.
     #[error("a camera with `at` needs an `angle` above 0")]
     NoAngle,
@@ -134,7 +153,16 @@ impl Camera {
             let projection = Projection::Perspective { angle: spec.angle.radians() };
             return Ok(Self { at: at.0, look_at: look_at.0, projection, aspect });
         }
-        Ok(Self::fitted(spec, aspect, balls))
+        let Some(eye) = spec.eye else { return Ok(Self::fitted(spec, aspect, balls)) };
+        // Where it stands and how far it looks up depend on each other.
+        let mut rise = 0.0;
+        let mut camera = Self::fitted(&CameraSpec { rise: Degrees(rise), ..*spec }, aspect, balls.clone());
+        for _ in 0..TURNS {
+            let sine = (eye - camera.look_at.z) / (camera.at - camera.look_at).length();
+            rise = libm::asin(sine.clamp(-STEEPEST, STEEPEST)) * 180.0 / std::f64::consts::PI;
+            camera = Self::fitted(&CameraSpec { rise: Degrees(rise), ..*spec }, aspect, balls.clone());
+        }
+        Ok(camera)
     }
 
     /// The camera that is turned as `spec` says, as near as all `balls` allow.
@@ -208,6 +236,19 @@ impl Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn stands_at_the_height_of_an_eye() {
+        let balls =
+            [(DVec3::new(0.0, 0.0, 1.0), 0.5), (DVec3::new(3.0, -1.0, 12.0), 0.4), (DVec3::new(-5.0, 1.0, 7.0), 0.2)];
+        for (eye, angle) in [(1.6, 30.0), (1.6, 60.0), (15.0, 40.0)] {
+            let spec = CameraSpec { eye: Some(eye), angle: Degrees(angle), ..CameraSpec::default() };
+            let camera = Camera::new(&spec, 1.2, balls.into_iter()).unwrap();
+            assert!((camera.at.z - eye).abs() < 1e-2, "{eye} {angle}: {}", camera.at.z);
+        }
+        let flat = CameraSpec { eye: Some(1.0), angle: Degrees(0.0), ..CameraSpec::default() };
+        assert_eq!(flat.check(), Err(CameraError::FlatEye));
+    }
 
     #[test]
     fn fits_what_there_is_to_see() {

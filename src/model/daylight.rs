@@ -170,7 +170,7 @@ fn steady(x: f32) -> f64 {
 mod tests {
     use super::*;
     use crate::math::Degrees;
-    use crate::model::{Camera, Ground, Material, Model};
+    use crate::model::{Camera, Ground, Look, Material, Model};
 
     /// At a place where the sun stands so high at noon.
     fn at_height(degrees: f64) -> DaylightSpec {
@@ -231,6 +231,8 @@ mod tests {
             lights: vec![],
             ground: Some(ground),
             sky: daylight.sky(),
+            air: None,
+            look: Look::Natural,
             marks: vec![],
             strokes: vec![],
         };

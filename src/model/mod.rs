@@ -3,6 +3,7 @@
 //! World space is right-handed with z up. Later stages need never handle a number that is not finite, a radius of 0,
 //! or a number with more digits than are written: all are rounded once, on entering a body.
 
+mod air;
 mod appearance;
 mod body;
 mod body_error;
@@ -12,7 +13,9 @@ mod detail;
 mod digits;
 mod dome;
 mod frame;
+mod grass;
 mod instance;
+mod look;
 mod object;
 pub mod pattern;
 mod scene_model;
@@ -20,6 +23,7 @@ mod sky_spec;
 mod stroke;
 mod view;
 
+pub use air::Air;
 pub use appearance::{FADE, Ground, GroundSpec, Light, LightSpec, Material, Sky};
 pub use body::{Ball, Body, Limbs, Mesh, Pose, Thorns};
 pub use body_error::BodyError;
@@ -28,7 +32,9 @@ pub use daylight::{Daylight, DaylightError};
 pub use digits::Digits;
 pub use dome::Dome;
 pub use frame::{LimbFrame, limb_frames};
+pub use grass::GrassSpec;
 pub use instance::Instance;
+pub use look::Look;
 pub use object::Object;
 pub use pattern::Pattern;
 pub use scene_model::{Model, to_world};

@@ -1,6 +1,6 @@
 //! A scene as renderers see it.
 
-use super::{Camera, Ground, Light, Material, Object, Sky, Stroke};
+use super::{Air, Camera, Ground, Light, Look, Material, Object, Sky, Stroke};
 use crate::geom::{Bounds, Mark};
 use crate::math::DVec3;
 
@@ -23,6 +23,10 @@ pub struct Model {
     pub ground: Option<Ground>,
     /// What is behind everything.
     pub sky: Sky,
+    /// Haze, if any.
+    pub air: Option<Air>,
+    /// How it is lit where nothing else is asked for.
+    pub look: Look,
     /// Construction drawings, in world space.
     pub marks: Vec<Mark>,
     /// What shines in a flat scene with a view, in scene space.

@@ -28,7 +28,7 @@ pub fn trace(model: &Model, view: &RenderSettings, progress: &Progress) -> Resul
     let mut objects: Vec<String> = model.objects.iter().map(|o| o.name.clone()).collect();
     objects.push("ground".to_owned());
     // A drawing's white is white.
-    let is_filmic = view.look == Look::Studio && !model.is_flat;
+    let is_filmic = view.look != Look::Exact && !model.is_flat;
     Ok(Traced { picture, is_filmic, objects, branches: world.branch_names() })
 }
 

@@ -20,8 +20,8 @@ pub struct Povray {
     pub crop: [u32; 4],
     /// Samples along each side of a pixel; 1 for its centre only.
     pub samples: u32,
-    /// A declaration on the command line, such as `Name=1`.
-    pub declare: Option<String>,
+    /// Declarations on the command line, such as `Name=1`.
+    pub declares: Vec<String>,
     /// Number of threads; `None` is POV-Ray's default.
     pub threads: Option<usize>,
 }
@@ -91,7 +91,7 @@ impl Povray {
         } else {
             command.arg("-A");
         }
-        if let Some(declare) = &self.declare {
+        for declare in &self.declares {
             command.arg(format!("Declare={declare}"));
         }
         if let Some(threads) = self.threads {
@@ -117,9 +117,20 @@ impl Povray {
         if !status.success() || !folder.join(picture).is_file() {
             return Err(PovrayError::Failed { status: status.to_string(), words: last_words(&said) });
         }
-        let warnings = said.into_iter().filter(|line| line.contains("Warning")).collect();
-        Ok(Rendered { warnings })
+        Ok(Rendered { warnings: warnings(&said) })
     }
+}
+
+/// POV-Ray's word for light that goes through leaves: it warns of it, as of all that a later version may change.
+const EXPERIMENT: &str = "backside illumination.";
+
+/// The warnings among what povray said, but for that of [`EXPERIMENT`] alone.
+fn warnings(said: &[String]) -> Vec<String> {
+    let next = said.iter().skip(1).map(String::as_str).chain(std::iter::once(""));
+    let is_warning = |line: &str, next: &str| {
+        line.contains("Warning") && !(line.contains("experimental feature") && next.starts_with(EXPERIMENT))
+    };
+    said.iter().zip(next).filter(|(line, next)| is_warning(line, next)).map(|(line, _)| line.clone()).collect()
 }
 
 /// The share done in a line such as `Rendered 1024 of 19200 pixels (5%)`.
@@ -143,6 +154,17 @@ fn last_words(said: &[String]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn light_through_leaves_is_no_matter_to_warn_of() {
+        let said = |feature: &str| {
+            ["Parse Warning: This rendering uses the following experimental feature(s):", feature, "and so on"]
+                .map(str::to_owned)
+        };
+        assert!(warnings(&said("backside illumination. The design and")).is_empty());
+        assert_eq!(warnings(&said("tiff, backside illumination.")).len(), 1);
+        assert_eq!(warnings(&said("x")[..1]).len(), 1);
+    }
 
     #[test]
     fn reads_progress() {

@@ -13,7 +13,7 @@ use crate::assemble::LightsSpec;
 use crate::geom::{MarkKind, ShapeSpec};
 use crate::grow::{SpaceSpec, Step, StepSpec};
 use crate::math::{DVec3, Degrees, Point, Ref};
-use crate::model::{CameraSpec, GlowSpec, GroundSpec, LightSpec, Material, SkySpec, ViewSpec};
+use crate::model::{Air, CameraSpec, GlowSpec, GroundSpec, LightSpec, Look, Material, SkySpec, ViewSpec};
 use crate::skin::{LeavesSpec, PaintSpec, Skin, ThornsSpec};
 
 /// A scene: named growth steps in named spaces, the objects that they become, and how these are seen.
@@ -31,6 +31,11 @@ pub struct Scene {
     #[serde(default)]
     #[schemars(length(min = 1))]
     pub include: Option<String>,
+    /// Where it stands: `meadow`, `heath`, `snow`, `studio`. The scene takes sky, ground, camera, look and what else the stage has that it does not give
+    /// itself, as by `include`; of a sky of the same kind, key by key.
+    #[serde(default)]
+    #[schemars(length(min = 1))]
+    pub stage: Option<String>,
     /// What it is called.
     #[schemars(length(min = 1))]
     pub title: String,
@@ -81,6 +86,12 @@ pub struct Scene {
     /// pale sky in space.
     #[serde(default)]
     pub sky: Option<SkySpec>,
+    /// Haze; by default none.
+    #[serde(default)]
+    pub air: Option<Air>,
+    /// How it is lit; by default `natural` under a sky of daylight, else `studio`.
+    #[serde(default)]
+    pub look: Option<Look>,
     /// What changes from frame to frame, by name.
     #[serde(default)]
     pub animation: BTreeMap<String, TrackSpec>,

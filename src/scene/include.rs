@@ -1,11 +1,11 @@
-//! `include`: what a scene takes from another file.
+//! `include` and `stage`: what a scene takes from another file.
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::mistake::{Included, Mistake, Span};
 use super::tree::{Entry, Value, merge, parse};
-use crate::files::{Folder, ReadError};
+use crate::files::{Folder, ReadError, embedded_stage, stage_names};
 
 /// Files that include each other, one the next, at most.
 const MOST_DEPTH: usize = 16;
@@ -17,14 +17,17 @@ const BY_KEY: [&str; 5] = ["space", "grow", "object", "material", "claim"];
 /// Tables by name whose items are taken over whole: an item is one of several kinds.
 const WHOLE: [&str; 3] = ["shape", "light", "animation"];
 /// Tables that are taken over key by key.
-const PLAIN: [&str; 3] = ["camera", "ground", "view"];
+const PLAIN: [&str; 4] = ["air", "camera", "ground", "view"];
+
+/// Where a scene stands and how it is lit.
+const PLACE: [&str; 5] = ["air", "ground", "light", "look", "sky"];
 
 /// Fills `root` with what the files that it includes give and it does not.
 pub(super) fn include(root: &mut Entry, folder: &Folder, mistakes: &mut Vec<Mistake>) {
     let mut folder = folder.clone();
     let mut chain: Vec<(String, PathBuf)> = Vec::new();
     // A base's own `include` comes with it, and is next.
-    while let Some(entry) = take(root) {
+    while let Some(entry) = take(root, "include") {
         let Value::String(name) = entry.value else {
             let message = format!("expected the name of a file, found {}", entry.value.kind());
             return mistakes.push(wrong(entry.span, message));
@@ -55,9 +58,31 @@ pub(super) fn include(root: &mut Entry, folder: &Folder, mistakes: &mut Vec<Mist
     }
 }
 
-fn take(root: &mut Entry) -> Option<Entry> {
+/// Removes what another stage gives, where one is asked for from outside.
+pub(super) fn clear_stage(root: &mut Entry) {
+    PLACE.iter().for_each(|key| drop(take(root, key)));
+}
+
+/// Fills `root` with what its stage gives and it does not.
+pub(super) fn set_stage(root: &mut Entry, mistakes: &mut Vec<Mistake>) {
+    let Some(entry) = take(root, "stage") else { return };
+    let wrong = |message: String| Mistake { span: entry.span.clone(), place: "stage".to_owned(), message };
+    let Value::String(name) = &entry.value else {
+        return mistakes.push(wrong(format!("expected the name of a stage, found {}", entry.value.kind())));
+    };
+    let Some(text) = embedded_stage(name) else {
+        let names = stage_names();
+        return mistakes.push(wrong(format!("there is no stage `{name}`; there are {}", names.join(", "))));
+    };
+    let file = Arc::new(Included { name: format!("stages/{name}.toml"), text: text.to_owned() });
+    let (stage, found) = parse(&file.text, Some(&file));
+    mistakes.extend(found);
+    take_over(root, &stage);
+}
+
+fn take(root: &mut Entry, key: &str) -> Option<Entry> {
     let Value::Table(table) = &mut root.value else { return None };
-    table.remove("include")
+    table.remove(key)
 }
 
 fn wrong(span: Option<Span>, message: String) -> Mistake {
@@ -94,8 +119,21 @@ fn take_over(scene: &mut Entry, base: &Entry) {
         let key = key.as_str();
         if PLAIN.contains(&key) {
             merge(own, value);
+        } else if key == "sky" {
+            // It is one of several kinds.
+            deepen(own, value);
         } else if BY_KEY.contains(&key) || WHOLE.contains(&key) {
             take_over_named(own, value, BY_KEY.contains(&key));
+        }
+    }
+}
+
+/// Adds to the tables within `own` what those of the same names within `base` give.
+fn deepen(own: &mut Entry, base: &Entry) {
+    let (Value::Table(own), Value::Table(base)) = (&mut own.value, &base.value) else { return };
+    for (name, value) in base {
+        if let Some(own) = own.get_mut(name) {
+            merge(own, value);
         }
     }
 }
@@ -142,6 +180,37 @@ mod tests {
         let (folder, source) = folder(scene, files);
         let said = load(&source, &[]).unwrap_err().to_string();
         said.replace(&format!("{}/", folder.path().display()), "")
+    }
+
+    #[test]
+    fn a_stage_is_taken_and_changed() {
+        let with = |own: &str, given: &[(&str, &str)]| {
+            let text = format!(
+                "title = \"Mine\"\n{own}\n[space.air]\nshape.box = {{ min = [-1, -1, 0], max = [1, 1, 2] }}\n\
+                 nodes.lattice = {{ spacing = 0.5, neighbours = 6 }}\n[grow.twig]\nspace = \"air\"\nfrom.at = [[0, 0, 0]]\n\
+                 to.tips = {{ count = 2 }}\nwidth.constant = 0.02\n[object.twig]\ngrow = [\"twig\"]\n"
+            );
+            let (_folder, source) = folder(&text, &[]);
+            let changes: Vec<Override> = given
+                .iter()
+                .map(|(path, value)| Override { path: (*path).to_owned(), value: (*value).to_owned() })
+                .collect();
+            load(&source, &changes).map(|scene| scene.recipe).map_err(|error| error.to_string())
+        };
+        let meadow = with("stage = \"meadow\"", &[]).unwrap();
+        let own = with("stage = \"meadow\"\n[sky]\ndaylight = { hour = 9 }\n[ground]\nheight = 1", &[]).unwrap();
+        assert_eq!(meadow.look, crate::model::Look::Natural);
+        assert!(meadow.ground.unwrap().grass.is_some() && meadow.air.is_some());
+        assert_eq!((own.ground.unwrap().height, own.ground.unwrap().grass), (1.0, meadow.ground.unwrap().grass));
+        assert_ne!(own.sky, meadow.sky);
+        // Another kind of sky takes nothing from the stage's.
+        let plain = with("stage = \"meadow\"\n[sky]\ncolour = \"#ffffff\"", &[]).unwrap();
+        assert_eq!(plain.sky, crate::model::Sky::plain(crate::math::Colour([1.0; 3])));
+        // From outside it replaces what the scene has, and is changed by what follows.
+        let changed = with("[sky]\ncolour = \"#ffffff\"", &[("sky.daylight.hour", "9"), ("stage", "meadow")]).unwrap();
+        assert_eq!(changed.sky, own.sky);
+        let error = with("stage = \"moon\"", &[]).unwrap_err();
+        assert!(error.contains("there is no stage `moon`; there are heath, meadow, snow, studio"), "{error}");
     }
 
     #[test]

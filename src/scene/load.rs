@@ -46,10 +46,17 @@ pub fn load(source: &Source, overrides: &[Override]) -> Result<Loaded, SceneErro
 ///
 /// # Errors
 /// [`SceneError`] with every mistake found.
-pub fn load_frame(source: &Source, overrides: &[Override], frame: Option<f64>) -> Result<Loaded, SceneError> {
+pub fn load_frame(source: &Source, given: &[Override], frame: Option<f64>) -> Result<Loaded, SceneError> {
     let (mut tree, mut mistakes) = tree::parse(&source.text, None);
     include::include(&mut tree, &source.folder, &mut mistakes);
-    tree::apply(&mut tree, overrides, &mut mistakes);
+    // A stage is set first, and changed then.
+    let (stage, overrides): (Vec<_>, Vec<_>) = given.iter().cloned().partition(|change| change.path == "stage");
+    if !stage.is_empty() {
+        include::clear_stage(&mut tree);
+        tree::apply(&mut tree, &stage, &mut mistakes);
+    }
+    include::set_stage(&mut tree, &mut mistakes);
+    tree::apply(&mut tree, &overrides, &mut mistakes);
     if let Some(frame) = frame {
         animation::animate(&mut tree, frame, &mut mistakes);
     }
@@ -63,7 +70,7 @@ pub fn load_frame(source: &Source, overrides: &[Override], frame: Option<f64>) -
         None
     };
     match resolved {
-        Some(resolved) if mistakes.is_empty() => Ok(resolved.changed_by(overrides)),
+        Some(resolved) if mistakes.is_empty() => Ok(resolved.changed_by(given)),
         _ => Err(SceneError::new(source, mistakes)),
     }
 }

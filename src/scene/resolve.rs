@@ -16,7 +16,7 @@ use crate::grow::{
     waits_for_itself,
 };
 use crate::math::Colour;
-use crate::model::{CameraSpec, Light, Material, Sky};
+use crate::model::{CameraSpec, Light, Look, Material, Sky, SkySpec};
 
 /// Resolves `scene`; adds what is wrong with it.
 pub(super) fn resolve(mut scene: Scene, source: &Source, tree: &Entry, mistakes: &mut Vec<Mistake>) -> Option<Loaded> {
@@ -55,9 +55,16 @@ pub(super) fn resolve(mut scene: Scene, source: &Source, tree: &Entry, mistakes:
         camera,
         lights,
         ground: scene.ground,
+        air: scene.air,
+        look: scene.look.unwrap_or_else(|| look_of(scene.sky.as_ref())),
         sky: sky?,
     };
     Some(Loaded::new(recipe, scene.show, claims?, source, tree))
+}
+
+/// The look of a scene that names none: a day has its light, what else is behind a scene is a studio's.
+fn look_of(sky: Option<&SkySpec>) -> Look {
+    if sky.is_some_and(|sky| sky.daylight.is_some()) { Look::Natural } else { Look::Studio }
 }
 
 /// How the scene is seen.

@@ -4,6 +4,7 @@ use rand::RngExt;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::leaf_tints::{LeafTints, Tinting};
 use crate::grow::{Canopy, sky};
 use crate::math::{DMat3, DVec3, Degrees, Point, Ref, Stream, rotated_toward, rotation};
 use crate::model::{BodyError, Digits, Material, Pose};
@@ -59,6 +60,9 @@ pub struct LeavesSpec {
     pub light: Option<LeafLight>,
     /// What they are made of.
     pub material: Ref<Material>,
+    /// Colours by leaf, in place of the material's.
+    #[serde(default)]
+    pub tints: Option<LeafTints>,
 }
 
 /// Sizes by how much of the sky a leaf sees past the limbs of its object.
@@ -92,10 +96,11 @@ impl LeavesSpec {
         let ends: usize = skeletons.iter().map(|s| s.paths.len()).sum();
         let leaves = ends as f64 * f64::from(self.count) * self.share;
         // A list of unknown length is half empty at worst; meshes are rounded into copies.
-        (leaves * (size_of::<Pose>() as f64 * 1.5 + leaf as f64 * 2.5)) as u64
+        (leaves * (size_of::<(Pose, u8)>() as f64 * 1.5 + leaf as f64 * 2.5)) as u64
     }
 
-    /// Where leaves stand on `skeletons`, which one object shows, from `foot`; `stream` is theirs alone.
+    /// Where leaves stand on `skeletons`, which one object shows, from `foot`, and the group that each is in of those of its tints;
+    /// `stream` is theirs alone.
     ///
     /// # Errors
     /// [`BodyError::TooMany`].
@@ -105,7 +110,7 @@ impl LeavesSpec {
         foot: DVec3,
         digits: Digits,
         stream: &Stream,
-    ) -> Result<Vec<Pose>, BodyError> {
+    ) -> Result<Vec<(Pose, u8)>, BodyError> {
         let ends: usize = skeletons.iter().map(|s| s.paths.len()).sum();
         let most = ends.saturating_mul(self.count as usize);
         BodyError::check_count(most)?;
@@ -115,6 +120,7 @@ impl LeavesSpec {
             skeletons.iter().flat_map(|s| &s.nodes).filter(|n| n.parent.is_none()).map(|n| bits(n.position)).collect();
         let canopy = self.light.map(|light| (light, Canopy::new(skeletons, light.clump)));
         let directions = sky(16, 1.2);
+        let tinting = self.tints.as_ref().map(|tints| Tinting::new(tints, skeletons));
         let mut poses = Vec::new();
         for (index, skeleton) in (0..).zip(skeletons) {
             let stream = stream.nth(index);
@@ -128,6 +134,7 @@ impl LeavesSpec {
                     continue;
                 }
                 let start: f64 = random.random::<f64>() * 360.0;
+                let mut shoot = tinting.as_ref().map(|tinting| tinting.shoot(&random));
                 for i in 0..self.count {
                     let [roll, more]: [f64; 2] = std::array::from_fn(|_| random.random());
                     let back = self.along * f64::from(i) / f64::from(self.count);
@@ -139,7 +146,8 @@ impl LeavesSpec {
                     }
                     if size > 0.0 {
                         let turn = (start + self.turn.0 * f64::from(i)).rem_euclid(360.0);
-                        poses.push(self.pose(at - foot, way, Degrees(turn), roll, size, digits));
+                        let pose = self.pose(at - foot, way, Degrees(turn), roll, size, digits);
+                        poses.push((pose, shoot.as_mut().map_or(0, |group| group(at))));
                     }
                 }
             }

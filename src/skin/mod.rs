@@ -5,6 +5,7 @@
 mod cones;
 mod isosurface;
 mod leaf_mesh;
+mod leaf_tints;
 mod leaves;
 mod levels;
 mod paint;
@@ -12,10 +13,12 @@ mod spec;
 mod strokes;
 mod thorns;
 mod tubes;
+mod turf;
 
 pub use cones::{cones, foot, spheres};
 pub use isosurface::{Distance, IsosurfaceError, IsosurfaceSpec, isosurface};
 pub use leaf_mesh::{LeafError, ball_mesh, leaf_mesh};
+pub use leaf_tints::LeafTints;
 pub use leaves::{LeafLight, LeavesSpec};
 pub use levels::by_level;
 pub use paint::{PaintSpec, Painting, painted};
@@ -23,3 +26,4 @@ pub use spec::{Skin, surface_mesh};
 pub use strokes::{shining, stroke};
 pub use thorns::ThornsSpec;
 pub use tubes::tubes;
+pub use turf::turf;

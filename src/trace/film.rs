@@ -45,6 +45,8 @@ pub struct Picture {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
     pub colour: [f64; 3],
+    /// The colour of the surface, or of the sky.
+    pub pigment: [f64; 3],
     pub alpha: f64,
     pub depth: f64,
     pub normal: DVec3,

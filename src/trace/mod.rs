@@ -2,15 +2,22 @@
 //!
 //! [`World`] is a [`crate::model::Model`] with acceleration structures; [`render`] traces it to a [`Picture`] in linear light,
 //! in tiles over all threads; the result does not depend on their number. [`Look::Exact`] is POV-Ray's shading;
-//! [`Look::Studio`] has light from the whole sky and soft shadows.
+//! [`Look::Studio`] has light from the whole sky and soft shadows; in [`Look::Natural`] light goes on from surface to surface and through
+//! leaves.
 
+mod denoise;
+mod eye;
 mod film;
+mod natural;
 mod render;
+mod sample;
 mod sampling;
 mod shade;
 mod smooth;
 mod world;
 
 pub use film::{Data, Picture, RANKS, Ranks};
-pub use render::{Look, RenderSettings, render};
+pub use render::{RenderSettings, render};
+
+pub use crate::model::Look;
 pub use world::{SurfaceHit, World};

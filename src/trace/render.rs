@@ -4,29 +4,17 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::film::{Data, Picture, Sample, data, mean};
-use super::sampling::numbers;
-use super::smooth::{FaceKey, MARGIN, smooth};
-use super::world::{Within, World};
-use crate::bvh::Ray;
-use crate::math::{Cancelled, Colour, DVec3, Progress};
-use crate::model::{Camera, Projection};
+use super::denoise::{self, Guide, denoise};
+use super::eye::Eye;
+use super::film::{Data, Picture, data, mean};
+use super::sample::sample;
+use super::smooth::{self, FaceKey, smooth};
+use super::world::World;
+use crate::math::{Cancelled, Progress};
+use crate::model::Look;
 
 /// Side of a tile, in pixels: small enough to balance the load, large enough for coherent rays.
 const TILE: u32 = 16;
-/// Samples after which a pixel of background only is finished.
-const FIRST: usize = 4;
-
-/// How a world is lit and sampled.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Look {
-    /// As POV-Ray: local illumination, and POV-Ray's samples.
-    Exact,
-    /// Light from the whole sky, soft shadows of the sun, ambient occlusion.
-    #[default]
-    Studio,
-}
-
 /// The parameters of a rendering.
 #[derive(Clone, Copy, Debug)]
 pub struct RenderSettings {
@@ -53,76 +41,43 @@ impl RenderSettings {
     }
 }
 
-/// The generator of camera rays.
-struct Eye {
-    camera: Camera,
-    /// Right, up and forwards.
-    frame: [DVec3; 3],
-    size: [f64; 2],
-    /// Perspective: distance of the image plane of height 1. Parallel: width of the image plane.
-    scale: f64,
-    within: Vec<Within>,
-}
-
-impl Eye {
-    fn new(world: &World<'_>, size: [u32; 2]) -> Self {
-        let camera = world.model.camera;
-        let within = match camera.projection {
-            Projection::Perspective { .. } => world.within(camera.at),
-            Projection::Parallel { .. } => Vec::new(),
-        };
-        let size = size.map(f64::from);
-        let scale = match camera.projection {
-            Projection::Perspective { angle } => 0.5 * size[0] / size[1] / libm::tan(angle * 0.5),
-            Projection::Parallel { width } => width,
-        };
-        Self { camera, frame: camera.frame(), size, scale, within }
-    }
-
-    /// The ray through a point of the picture in pixel coordinates (`reference/povray.md`).
-    fn ray(&self, x: f64, y: f64) -> Ray {
-        let [right, up, forwards] = self.frame;
-        let [width, height] = self.size;
-        let aspect = width / height;
-        let (u, v) = (x / width - 0.5, 0.5 - y / height);
-        match self.camera.projection {
-            Projection::Perspective { .. } => {
-                Ray::new(self.camera.at, (forwards * self.scale + right * (aspect * u) + up * v).normalize())
-            }
-            Projection::Parallel { .. } => {
-                Ray::new(self.camera.at + (right * u + up * (v / aspect)) * self.scale, forwards)
-            }
-        }
-    }
-}
-
 /// Renders `world`.
 ///
 /// # Errors
 /// [`Cancelled`] by `progress`.
 pub fn render(world: &World<'_>, view: &RenderSettings, progress: &Progress) -> Result<Picture, Cancelled> {
     let [left, top, width, height] = view.crop;
-    if view.look == Look::Exact {
-        return Ok(trace_tiles(world, view, progress)?.0);
-    }
-    // A crop equals that part of the whole picture: smoothing needs a margin.
-    let (x, y) = (left.saturating_sub(MARGIN), top.saturating_sub(MARGIN));
-    let right = (left + width + MARGIN).min(view.size[0]);
-    let bottom = (top + height + MARGIN).min(view.size[1]);
+    // A crop equals that part of the whole picture: filters need a margin.
+    let margin = match view.look {
+        Look::Exact => 0,
+        Look::Studio => smooth::MARGIN,
+        Look::Natural => denoise::MARGIN,
+    };
+    let (x, y) = (left.saturating_sub(margin), top.saturating_sub(margin));
+    let right = (left + width + margin).min(view.size[0]);
+    let bottom = (top + height + margin).min(view.size[1]);
     let wide = RenderSettings { crop: [x, y, right - x, bottom - y], ..*view };
-    let (mut picture, faces) = trace_tiles(world, &wide, progress)?;
-    picture.pixels = smooth(picture.width, &picture.pixels, &faces);
+    let Traced { mut picture, faces, guides } = trace_tiles(world, &wide, progress)?;
+    match view.look {
+        Look::Exact => return Ok(picture),
+        Look::Studio => picture.pixels = smooth(picture.width, &picture.pixels, &faces),
+        Look::Natural => picture.pixels = denoise(picture.width, &picture.pixels, &guides),
+    }
     Ok(picture.cut([left - x, top - y, width, height]))
 }
 
-/// Traces all tiles; a pixel has a face where all its samples hit one face of uniform colour.
-fn trace_tiles(
-    world: &World<'_>,
-    view: &RenderSettings,
-    progress: &Progress,
-) -> Result<(Picture, Vec<Option<FaceKey>>), Cancelled> {
+/// A picture, and what guides the filter of its look: in the studio look the face of each pixel where all its samples hit one face
+/// of uniform colour.
+struct Traced {
+    picture: Picture,
+    faces: Vec<Option<FaceKey>>,
+    guides: Vec<Guide>,
+}
+
+/// Traces all tiles.
+fn trace_tiles(world: &World<'_>, view: &RenderSettings, progress: &Progress) -> Result<Traced, Cancelled> {
     let eye = Eye::new(world, view.size);
-    let [left, top, width, height] = view.crop;
+    let [_, _, width, height] = view.crop;
     let mut tiles: Vec<(u32, u32)> =
         (0..height.div_ceil(TILE)).flat_map(|y| (0..width.div_ceil(TILE)).map(move |x| (x, y))).collect();
     tiles.sort_by_key(|&(x, y)| morton(x) | morton(y) << 1);
@@ -131,44 +86,41 @@ fn trace_tiles(
         .chain(world.model.objects.iter().map(|o| world.model.materials[o.material].1.pattern.is_none()))
         .chain(std::iter::once(true))
         .collect();
-    let face = |s: &Sample| FaceKey::new(s.object, s.normal);
     let done = AtomicUsize::new(0);
-    let traced: Vec<TracedTile> = tiles
-        .par_iter()
-        .map(|&(tile_x, tile_y)| {
-            progress.check()?;
-            let mut tile = TracedTile::default();
-            let mut samples = Vec::new();
-            for (x, y) in places(tile_x, tile_y, width, height) {
-                samples.clear();
-                sample(world, view, &eye, left + x, top + y, &mut samples);
-                tile.pixels.push(mean(&samples));
-                let one = FaceKey::of_all(samples.iter().map(face));
-                tile.faces.push(one.filter(|_| is_even[samples[0].object as usize]));
-                if view.data {
-                    tile.data.push(data(&samples));
-                }
-            }
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            progress.report("render", done as f64 / tiles.len() as f64)?;
-            Ok(tile)
-        })
-        .collect::<Result<_, Cancelled>>()?;
+    let tile = |&at: &(u32, u32)| {
+        progress.check()?;
+        let tile = trace_tile(world, view, &eye, at, &is_even);
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        progress.report("render", done as f64 / tiles.len() as f64)?;
+        Ok(tile)
+    };
+    let traced: Vec<TracedTile> = tiles.par_iter().map(tile).collect::<Result<_, Cancelled>>()?;
     let count = width as usize * height as usize;
-    let mut picture = Picture { width, height, pixels: vec![[0.0; 4]; count], data: Vec::new() };
-    let mut faces = vec![None; count];
-    picture.data = traced.first().and_then(|tile| tile.data.first()).map_or(Vec::new(), |&data| vec![data; count]);
+    let kept = |look| if view.look == look { count } else { 0 };
+    let mut whole = Traced {
+        picture: Picture { width, height, pixels: vec![[0.0; 4]; count], data: Vec::new() },
+        faces: vec![None; kept(Look::Studio)],
+        guides: vec![Guide::default(); kept(Look::Natural)],
+    };
+    let data = traced.first().and_then(|tile| tile.data.first());
+    whole.picture.data = data.map_or(Vec::new(), |&data| vec![data; count]);
     for (tile, &(tile_x, tile_y)) in traced.into_iter().zip(&tiles) {
         for (i, (x, y)) in places(tile_x, tile_y, width, height).enumerate() {
             let place = (y * width + x) as usize;
-            picture.pixels[place] = tile.pixels[i];
-            faces[place] = tile.faces[i];
-            if view.data {
-                picture.data[place] = tile.data[i];
-            }
+            whole.picture.pixels[place] = tile.pixels[i];
+            copy(&mut whole.faces, place, &tile.faces, i);
+            copy(&mut whole.guides, place, &tile.guides, i);
+            copy(&mut whole.picture.data, place, &tile.data, i);
         }
     }
-    Ok((picture, faces))
+    Ok(whole)
+}
+
+/// Copies what is kept of a pixel, if it is.
+fn copy<T: Copy>(to: &mut [T], at: usize, from: &[T], i: usize) {
+    if let (Some(to), Some(from)) = (to.get_mut(at), from.get(i)) {
+        *to = *from;
+    }
 }
 
 /// A finished tile, pixel by pixel.
@@ -176,7 +128,38 @@ fn trace_tiles(
 struct TracedTile {
     pixels: Vec<[f32; 4]>,
     faces: Vec<Option<FaceKey>>,
+    guides: Vec<Guide>,
     data: Vec<Data>,
+}
+
+/// Traces one tile; `is_even` tells of each object whether it has one colour.
+fn trace_tile(
+    world: &World<'_>,
+    view: &RenderSettings,
+    eye: &Eye,
+    (tile_x, tile_y): (u32, u32),
+    is_even: &[bool],
+) -> TracedTile {
+    let [left, top, width, height] = view.crop;
+    let mut tile = TracedTile::default();
+    let mut samples = Vec::new();
+    for (x, y) in places(tile_x, tile_y, width, height) {
+        samples.clear();
+        sample(world, view, eye, left + x, top + y, &mut samples);
+        tile.pixels.push(mean(&samples));
+        match view.look {
+            Look::Exact => {}
+            Look::Studio => {
+                let one = FaceKey::of_all(samples.iter().map(|s| FaceKey::new(s.object, s.normal)));
+                tile.faces.push(one.filter(|_| is_even[samples[0].object as usize]));
+            }
+            Look::Natural => tile.guides.push(Guide::of(&samples)),
+        }
+        if view.data {
+            tile.data.push(data(&samples));
+        }
+    }
+    tile
 }
 
 /// The pixels of a tile of a picture of this size.
@@ -188,71 +171,4 @@ fn places(tile_x: u32, tile_y: u32, width: u32, height: u32) -> impl Iterator<It
 /// The bits of `x` interleaved with zeros, half of a Morton code.
 fn morton(x: u32) -> u64 {
     (0..32).fold(0, |spread, bit| spread | (u64::from(x) >> bit & 1) << (2 * bit))
-}
-
-/// Adds the samples of a pixel.
-fn sample(world: &World<'_>, view: &RenderSettings, eye: &Eye, x: u32, y: u32, samples: &mut Vec<Sample>) {
-    let (px, py) = (f64::from(x), f64::from(y));
-    let take = |dx: f64, dy: f64, u: &[f64; 6]| trace(world, view, eye, &eye.ray(px + dx, py + dy), u);
-    match view.look {
-        Look::Exact => {
-            samples.push(take(0.5, 0.5, &[0.0; 6]));
-            let side = libm::round(libm::sqrt(f64::from(view.samples)));
-            if side > 1.0 {
-                for j in 0..side as u32 {
-                    for i in 0..side as u32 {
-                        samples.push(take((f64::from(i) + 0.5) / side, (f64::from(j) + 0.5) / side, &[0.0; 6]));
-                    }
-                }
-            }
-        }
-        Look::Studio => {
-            for u in numbers(x, y, view.samples) {
-                let [dx, dy] = if view.samples == 1 { [0.5; 2] } else { [u[0], u[1]] };
-                samples.push(take(dx, dy, &u));
-                if samples.len() == FIRST && samples.iter().all(|s| s.object == 0) {
-                    return;
-                }
-            }
-        }
-    }
-}
-
-/// The sample along a camera ray; `u` are its random numbers.
-fn trace(world: &World<'_>, view: &RenderSettings, eye: &Eye, ray: &Ray, u: &[f64; 6]) -> Sample {
-    let Some(surface) = world.closest(ray, &eye.within) else {
-        let Colour(sky) = if view.transparent { Colour([0.0; 3]) } else { world.model.sky.colour(ray.direction) };
-        return Sample {
-            colour: sky,
-            alpha: if view.transparent { 0.0 } else { 1.0 },
-            depth: f64::INFINITY,
-            normal: DVec3::ZERO,
-            point: DVec3::ZERO,
-            cost: 0.0,
-            level: 0,
-            object: 0,
-            branch: 0,
-        };
-    };
-    let lit = match view.look {
-        Look::Exact => world.exact(ray, &surface),
-        Look::Studio => world.studio(ray, &surface, u),
-    };
-    // The ground fades into the horizon.
-    let share = match &world.model.ground {
-        Some(ground) if surface.object.is_none() => ground.share(surface.point),
-        _ => 1.0,
-    };
-    let Colour(behind) = if view.transparent { Colour([0.0; 3]) } else { world.model.sky.at_horizon() };
-    Sample {
-        colour: [0, 1, 2].map(|i| lit[i] * share + behind[i] * (1.0 - share)),
-        alpha: if view.transparent { share } else { 1.0 },
-        depth: (surface.point - eye.camera.at).dot(eye.frame[2]),
-        normal: surface.normal,
-        point: surface.point,
-        cost: surface.cost,
-        level: surface.level,
-        object: surface.object.map_or(world.model.objects.len() as u32, |i| i) + 1,
-        branch: surface.object.map_or(0, |_| surface.branch + 1),
-    }
 }

@@ -1,6 +1,6 @@
 //! Low-discrepancy sampling: a deterministic sequence that is well distributed over a pixel and over neighbouring pixels.
 
-use crate::math::{DVec3, mix};
+use crate::math::{DVec3, mix, name_of};
 
 /// Dimensions of a sample: two for the pixel, two for the sky, two for the sun.
 pub(super) const DIMENSIONS: usize = 6;
@@ -16,7 +16,19 @@ const STEPS: [u32; DIMENSIONS] =
 pub(super) fn numbers(x: u32, y: u32, count: u32) -> impl Iterator<Item = [f64; DIMENSIONS]> {
     let square = mix(u64::from(x / SQUARE) << 32 | u64::from(y / SQUARE)) as u32;
     let first = hilbert(x % SQUARE, y % SQUARE).wrapping_mul(count).wrapping_add(square);
-    (0..count).map(move |n| STEPS.map(|step| f64::from(first.wrapping_add(n).wrapping_mul(step)) / 4_294_967_296.0))
+    (0..count).map(move |n| STEPS.map(|step| share(first.wrapping_add(n).wrapping_mul(step))))
+}
+
+/// Five numbers, 0 to 1, for the path of the `sample`th sample of a picture after so many bounces: at random, since few
+/// dimensions can be well distributed.
+pub(super) fn further(sample: u64, bounce: usize) -> [f64; 5] {
+    let a = name_of(sample, bounce as u64);
+    let (b, c) = (mix(a), mix(!a));
+    [a as u32, (a >> 32) as u32, b as u32, (b >> 32) as u32, c as u32].map(share)
+}
+
+fn share(bits: u32) -> f64 {
+    f64::from(bits) / 4_294_967_296.0
 }
 
 /// The index of a pixel on the Hilbert curve through its square.

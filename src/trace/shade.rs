@@ -18,7 +18,7 @@ impl World<'_> {
         let mut colour = pigment.map(|c| c * own);
         for light in &self.model.lights {
             let (towards, far, shadow) = towards(light, surface.point);
-            if towards.dot(surface.normal) <= 0.0 {
+            if !material.shows(surface.normal.dot(towards)) {
                 continue;
             }
             let to_light = Ray { origin: surface.point, direction: towards, near: SHADOW, far };
@@ -37,14 +37,29 @@ impl World<'_> {
     pub(super) fn studio(&self, ray: &Ray, surface: &SurfaceHit, u: &[f64; DIMENSIONS]) -> [f64; 3] {
         let (material, pigment) = self.material(surface);
         let mut colour = pigment.map(|c| c * material.emission);
-        let origin = surface.point + surface.normal * self.off;
-        if material.diffuse > 0.0 && !surface.is_inside {
-            let direction = cosine_hemisphere(surface.normal, u[2], u[3]);
-            if !self.is_blocked(&Ray::new(origin, direction)) {
-                let Colour(light) = self.dome.light(direction);
-                add(&mut colour, &pigment.map(|c| c * material.diffuse), &light);
-            }
+        if surface.is_inside {
+            return colour;
         }
+        if let Some((onwards, share)) = self.scattered(material, surface, u[2], u[3])
+            && !self.is_blocked(&onwards)
+        {
+            let Colour(light) = self.dome.light(onwards.direction);
+            add(&mut colour, &pigment.map(|c| c * share), &light);
+        }
+        add(&mut colour, &self.sunlit(ray, surface, material, pigment, [u[4], u[5]]), &[1.0; 3]);
+        colour
+    }
+
+    /// What `surface` shows of the lights of the studio, with suns of finite size; `u` selects a point of each sun.
+    pub(super) fn sunlit(
+        &self,
+        ray: &Ray,
+        surface: &SurfaceHit,
+        material: &Material,
+        pigment: [f64; 3],
+        u: [f64; 2],
+    ) -> [f64; 3] {
+        let mut colour = [0.0; 3];
         for light in &self.model.lights {
             let Colour(strength) = light.studio();
             if strength == [0.0; 3] {
@@ -54,11 +69,13 @@ impl World<'_> {
             if let Light::Sun { size, .. } = light
                 && *size > 0.0
             {
-                towards = cone(towards, size * 0.5, u[4], u[5]);
+                towards = cone(towards, size * 0.5, u[0], u[1]);
             }
-            if towards.dot(surface.normal) <= 0.0 || surface.is_inside {
+            let facing = surface.normal.dot(towards);
+            if !material.shows(facing) {
                 continue;
             }
+            let origin = self.beside(surface, facing);
             if !shadow || !self.is_blocked(&Ray { far, ..Ray::new(origin, towards) }) {
                 let strength = strength.map(|x| x * light.falloff(far));
                 add(&mut colour, &lit(material, pigment, shadow.then_some(ray), surface.normal, towards), &strength);
@@ -67,8 +84,26 @@ impl World<'_> {
         colour
     }
 
+    /// A direction in which `material` scatters light, or from which it gets it, and the share of that light: on the side of
+    /// the normal, or beyond a leaf.
+    pub(super) fn scattered(&self, material: &Material, surface: &SurfaceHit, u: f64, v: f64) -> Option<(Ray, f64)> {
+        let share = material.diffuse + material.through;
+        if share <= 0.0 {
+            return None;
+        }
+        let front = material.diffuse / share;
+        let (side, u) = if u < front { (1.0, u / front) } else { (-1.0, (u - front) / (1.0 - front)) };
+        let direction = cosine_hemisphere(surface.normal * side, u, v);
+        Some((Ray::new(self.beside(surface, side), direction), share))
+    }
+
+    /// Where rays start from `surface`, on the side of its normal where `facing` is positive.
+    fn beside(&self, surface: &SurfaceHit, facing: f64) -> DVec3 {
+        surface.point + surface.normal * self.off.copysign(facing)
+    }
+
     /// The material of a surface, and its colour there.
-    fn material(&self, surface: &SurfaceHit) -> (&Material, [f64; 3]) {
+    pub(super) fn material(&self, surface: &SurfaceHit) -> (&Material, [f64; 3]) {
         let material = match (surface.object, &self.model.ground) {
             (Some(object), _) => &self.model.materials[self.model.objects[object as usize].material].1,
             (None, Some(ground)) => &ground.material,
@@ -91,17 +126,18 @@ fn towards(light: &Light, point: DVec3) -> (DVec3, f64, bool) {
 }
 
 /// Adds `share * light`, channel by channel.
-fn add(sum: &mut [f64; 3], share: &[f64; 3], light: &[f64; 3]) {
+pub(super) fn add(sum: &mut [f64; 3], share: &[f64; 3], light: &[f64; 3]) {
     for i in 0..3 {
         sum[i] += share[i] * light[i];
     }
 }
 
-/// The reflected share of a light: Lambertian diffuse, and with `ray` the highlights of Blinn (`specular`) and Phong. Shadowless
-/// lights have no highlights.
+/// The share of a light that is shown: Lambertian diffuse on the side of the normal, what goes through on the other, and with `ray`
+/// the highlights of Blinn (`specular`) and Phong. Shadowless lights have no highlights.
 fn lit(material: &Material, pigment: [f64; 3], ray: Option<&Ray>, normal: DVec3, towards: DVec3) -> [f64; 3] {
-    let diffuse = material.diffuse * normal.dot(towards);
-    let Some(ray) = ray else { return pigment.map(|c| c * diffuse) };
+    let facing = normal.dot(towards);
+    let diffuse = facing.abs() * if facing > 0.0 { material.diffuse } else { material.through };
+    let Some(ray) = ray.filter(|_| facing > 0.0) else { return pigment.map(|c| c * diffuse) };
     let mut gloss = 0.0;
     if material.specular > 0.0 {
         let cos = (towards - ray.direction).normalize_or_zero().dot(normal);

@@ -19,6 +19,8 @@ pub struct World<'a> {
     /// Object and place of each box.
     instances: Vec<(u32, Standing)>,
     boxes: Boxes,
+    /// The share of the ground's pattern, and the unit of its coordinates.
+    ground: Option<(Expr, f64)>,
     /// The first number of each object's branches among all.
     branches: Vec<u32>,
     /// How far rays from surfaces start off them.
@@ -52,56 +54,44 @@ struct Laid {
 }
 
 /// Where an object, or one posed mesh of it, is in the world.
-#[derive(Clone, Copy)]
-enum Standing {
-    /// As an instance.
-    Whole(Instance),
-    /// By a matrix: where its origin is, the axes, and their inverse.
-    Posed(DVec3, DMat3, DMat3),
+struct Standing {
+    /// Where its origin is.
+    at: DVec3,
+    /// Its axes' inverse: what turns directions in the world into its own.
+    inverse: DMat3,
 }
 
 impl Standing {
+    fn whole(instance: &Instance) -> Self {
+        let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| instance.unturned(axis) / instance.scale);
+        Self { at: instance.at, inverse: DMat3::from_cols(x, y, z) }
+    }
+
     fn posed(instance: &Instance, pose: &Pose) -> Self {
         let axes = [pose.axes.x_axis, pose.axes.y_axis, pose.axes.z_axis];
         let [x, y, z] = axes.map(|axis| instance.turned(axis * instance.scale));
-        let axes = DMat3::from_cols(x, y, z);
-        Self::Posed(instance.to_world(pose.at), axes, axes.inverse())
+        Self { at: instance.to_world(pose.at), inverse: DMat3::from_cols(x, y, z).inverse() }
     }
 
-    fn to_world(self, p: DVec3) -> DVec3 {
-        match self {
-            Self::Whole(instance) => instance.to_world(p),
-            Self::Posed(at, axes, _) => axes * p + at,
-        }
+    fn to_world(&self, p: DVec3) -> DVec3 {
+        self.inverse.inverse() * p + self.at
     }
 
-    fn to_own(self, p: DVec3) -> DVec3 {
-        match self {
-            Self::Whole(instance) => instance.to_object(p),
-            Self::Posed(at, _, inverse) => inverse * (p - at),
-        }
+    fn to_own(&self, p: DVec3) -> DVec3 {
+        self.inverse * (p - self.at)
     }
 
     /// The ray in the object's own space, and how much longer distances along it are in the world.
-    fn ray(self, ray: &Ray) -> (Ray, f64) {
-        let (direction, scale) = match self {
-            Self::Whole(instance) => (instance.unturned(ray.direction), instance.scale),
-            Self::Posed(.., inverse) => {
-                let direction = inverse * ray.direction;
-                let length = direction.length();
-                (direction / length, 1.0 / length)
-            }
-        };
-        let origin = self.to_own(ray.origin);
-        (Ray { origin, direction, near: ray.near / scale, far: ray.far / scale }, scale)
+    fn ray(&self, ray: &Ray) -> (Ray, f64) {
+        let direction = self.inverse * ray.direction;
+        let length = direction.length();
+        let (origin, direction) = (self.to_own(ray.origin), direction / length);
+        (Ray { origin, direction, near: ray.near * length, far: ray.far * length }, 1.0 / length)
     }
 
     /// A unit normal in the world from one of the object's own.
-    fn normal(self, normal: DVec3) -> DVec3 {
-        match self {
-            Self::Whole(instance) => instance.turned(normal),
-            Self::Posed(.., inverse) => (inverse.transpose() * normal).normalize_or(DVec3::Z),
-        }
+    fn normal(&self, normal: DVec3) -> DVec3 {
+        (self.inverse.transpose() * normal).normalize_or(DVec3::Z)
     }
 }
 
@@ -246,7 +236,7 @@ impl<'a> World<'a> {
                     Body::Posed(_, poses) => {
                         instances.extend(poses.iter().map(|pose| (i, Standing::posed(instance, pose))));
                     }
-                    Body::Limbs(_) | Body::Mesh(_) => instances.push((i, Standing::Whole(*instance))),
+                    Body::Limbs(_) | Body::Mesh(_) => instances.push((i, Standing::whole(instance))),
                 }
             }
         }
@@ -270,7 +260,10 @@ impl<'a> World<'a> {
             .collect();
         let size = model.bounds();
         let reach = if size.is_empty() { 1.0 } else { size.min.abs().max(size.max.abs()).max_element() };
-        Self { model, dome: Dome::new(model), shapes, boxes: Boxes::new(&boxes), instances, branches, off: reach * OFF }
+        let pattern = model.ground.as_ref().and_then(|ground| ground.material.pattern);
+        let ground = pattern.map(|pattern| (pattern.figure().share(), pattern.figure().size()));
+        let (dome, boxes) = (Dome::new(model), Boxes::new(&boxes));
+        Self { model, dome, shapes, boxes, instances, ground, branches, off: reach * OFF }
     }
 
     /// The name of each branch as [`SurfaceHit::branch`] counts them: `object.limb`.
@@ -381,7 +374,10 @@ impl<'a> World<'a> {
             branch: 0,
             cost: 0.0,
             level: 0,
-            pattern: 0.0,
+            pattern: self.ground.as_ref().map_or(0.0, |(share, size)| {
+                // Exporters have y up.
+                share.at(DVec3::new(point.x, point.z, point.y) / *size)
+            }),
             is_inside: false,
         })
     }

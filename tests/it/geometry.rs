@@ -40,6 +40,8 @@ fn model(balls: Vec<Ball>, segments: Vec<[u32; 2]>) -> Model {
         }],
         ground: None,
         sky: Sky::plain(Colour([0.0; 3])),
+        air: None,
+        look: Look::Studio,
         marks: Vec::new(),
         strokes: Vec::new(),
     }

@@ -7,12 +7,14 @@ mod expr;
 mod figure;
 mod lenticels;
 mod moss;
+mod mottle;
 
 pub use bark::Bark;
 pub use expr::Expr;
 pub use figure::Figure;
 pub use lenticels::Lenticels;
 pub use moss::Moss;
+pub use mottle::Mottle;
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -28,11 +30,13 @@ pub enum Pattern {
     Moss(Moss),
     /// Short bands across the limb.
     Lenticels(Lenticels),
+    /// Patches of another colour; also of the ground.
+    Mottle(Mottle),
 }
 
 impl Pattern {
     /// The names of all.
-    pub const NAMES: [&'static str; 3] = ["bark", "moss", "lenticels"];
+    pub const NAMES: [&'static str; 4] = ["bark", "moss", "lenticels", "mottle"];
 
     /// What draws it: the one row of each pattern.
     #[must_use]
@@ -41,6 +45,7 @@ impl Pattern {
             Self::Bark(bark) => bark,
             Self::Moss(moss) => moss,
             Self::Lenticels(lenticels) => lenticels,
+            Self::Mottle(mottle) => mottle,
         }
     }
 }

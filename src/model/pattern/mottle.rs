@@ -1,0 +1,83 @@
+//! Patches of another colour, of several sizes.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::expr::{Expr, Wave, waves};
+use super::figure::Figure;
+use crate::math::Colour;
+
+/// Patches of another colour, of several sizes, that run into each other: soil, meadows, stained stone.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Mottle {
+    /// The other colour.
+    pub colour: Colour,
+    /// Size of its larger patches, in scene units.
+    #[schemars(range(min = 1e-6, max = 1e6))]
+    pub size: f64,
+}
+
+/// The larger patches, and smaller ones of about a third and a tenth of their size. No two waves have a common period.
+const LARGE: [Wave; 3] = [
+    Wave { along: [3.1, 2.3, 1.7], phase: 0.7, bend: 1.4, by: [-1.3, 1.9, 2.1] },
+    Wave { along: [-1.9, 2.9, 2.7], phase: 2.9, bend: 1.3, by: [2.3, 1.1, -1.7] },
+    Wave { along: [1.3, -2.1, 3.3], phase: 4.6, bend: 1.2, by: [1.6, 2.2, 0.9] },
+];
+const SMALL: [Wave; 2] = [
+    Wave { along: [8.3, 5.9, -6.7], phase: 1.1, bend: 1.7, by: [-4.1, 6.3, 5.1] },
+    Wave { along: [-5.3, 7.1, 7.9], phase: 3.7, bend: 1.6, by: [6.7, -3.9, 4.7] },
+];
+const SMALLEST: [Wave; 2] = [
+    Wave { along: [23.0, -17.3, 19.1], phase: 0.4, bend: 2.1, by: [13.7, 19.9, -11.3] },
+    Wave { along: [17.9, 21.7, -25.1], phase: 5.1, bend: 1.9, by: [-15.1, 10.7, 17.3] },
+];
+/// How much the sum of each counts.
+const WEIGHTS: [f64; 3] = [0.16, 0.13, 0.08];
+
+impl Figure for Mottle {
+    fn name(&self) -> &'static str {
+        "mottle"
+    }
+
+    fn colour(&self) -> Colour {
+        self.colour
+    }
+
+    fn size(&self) -> f64 {
+        self.size
+    }
+
+    fn least_radius(&self) -> f64 {
+        0.0
+    }
+
+    fn mean(&self) -> f64 {
+        0.5
+    }
+
+    fn share(&self) -> Expr {
+        let [large, small, smallest] = WEIGHTS;
+        let sum = waves(&LARGE) * large + waves(&SMALL) * small + waves(&SMALLEST) * smallest + 0.5;
+        Expr::from(1.0).min(Expr::from(0.0).max(sum))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::DVec3;
+
+    /// Each colour has its share, and where one is changes from patch to patch.
+    #[test]
+    fn both_colours_are_there_alike() {
+        let share = Mottle { colour: Colour([0.0; 3]), size: 1.0 }.share();
+        let row = |y: f64| (0..200).map(move |x| (f64::from(x) * 0.37, y));
+        let all: Vec<f64> =
+            (0..200).flat_map(|y| row(f64::from(y) * 0.41)).map(|(x, z)| share.at(DVec3::new(x, 0.0, z))).collect();
+        let mean = all.iter().sum::<f64>() / all.len() as f64;
+        let deviation = libm::sqrt(all.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / all.len() as f64);
+        assert!((mean - 0.5).abs() < 0.03 && (0.15..0.35).contains(&deviation), "{mean} {deviation}");
+        assert!(all.iter().all(|x| (0.0..=1.0).contains(x)));
+    }
+}

@@ -1,0 +1,115 @@
+//! Samples of a pixel.
+
+use super::denoise::Guide;
+use super::eye::Eye;
+use super::film::Sample;
+use super::render::RenderSettings;
+use super::sampling::{DIMENSIONS, numbers};
+use super::world::World;
+use crate::bvh::Ray;
+use crate::math::{Colour, DVec3};
+use crate::model::Look;
+
+/// Samples after which a pixel of background only is finished, and after so many more of which it is asked whether it needs others.
+const FIRST: usize = 4;
+/// A pixel of the natural look is finished where the standard error of what it shows is below this, over the square root of the
+/// number of samples that it may have: with 16, three of 255 in the midst of the scale.
+const NOISE: f32 = 0.02;
+
+/// Adds the samples of a pixel.
+pub(super) fn sample(world: &World<'_>, view: &RenderSettings, eye: &Eye, x: u32, y: u32, samples: &mut Vec<Sample>) {
+    let (px, py) = (f64::from(x), f64::from(y));
+    let take = |[dx, dy]: [f64; 2], u: &[f64; DIMENSIONS], number: u64| {
+        trace(world, view, eye, &eye.ray(px + dx, py + dy), u, number)
+    };
+    if view.look == Look::Exact {
+        samples.push(take([0.5; 2], &[0.0; DIMENSIONS], 0));
+        let side = libm::round(libm::sqrt(f64::from(view.samples)));
+        if side > 1.0 {
+            for j in 0..side as u32 {
+                for i in 0..side as u32 {
+                    let place = [i, j].map(|k| (f64::from(k) + 0.5) / side);
+                    samples.push(take(place, &[0.0; DIMENSIONS], 0));
+                }
+            }
+        }
+        return;
+    }
+    let pixel = u64::from(y) * u64::from(view.size[0]) + u64::from(x);
+    for (n, u) in (0..).zip(numbers(x, y, view.samples)) {
+        let place = if view.samples == 1 { [0.5; 2] } else { [u[0], u[1]] };
+        samples.push(take(place, &u, pixel * u64::from(view.samples) + n));
+        if samples.len().is_multiple_of(FIRST) && is_finished(view, samples) {
+            return;
+        }
+    }
+}
+
+/// Does a pixel need no more samples?
+fn is_finished(view: &RenderSettings, samples: &[Sample]) -> bool {
+    let is_first = samples.len() == FIRST;
+    if samples.iter().all(|s| s.object == 0) {
+        return is_first;
+    }
+    if view.look != Look::Natural || is_first {
+        return false;
+    }
+    let guide = Guide::of(samples);
+    guide.error() < NOISE / (view.samples as f32).sqrt()
+}
+
+/// The sample along a camera ray, the `number`th of the picture; `u` are its random numbers.
+fn trace(world: &World<'_>, view: &RenderSettings, eye: &Eye, ray: &Ray, u: &[f64; DIMENSIONS], number: u64) -> Sample {
+    let Some(surface) = world.closest(ray, &eye.within) else {
+        let Colour(sky) = if view.transparent { Colour([0.0; 3]) } else { world.model.sky.colour(ray.direction) };
+        let seen = if view.transparent { sky } else { hazed(world, ray, f64::INFINITY, sky) };
+        return Sample {
+            colour: seen,
+            pigment: seen,
+            alpha: if view.transparent { 0.0 } else { 1.0 },
+            depth: f64::INFINITY,
+            normal: DVec3::ZERO,
+            point: DVec3::ZERO,
+            cost: 0.0,
+            level: 0,
+            object: 0,
+            branch: 0,
+        };
+    };
+    let lit = match view.look {
+        Look::Exact => world.exact(ray, &surface),
+        Look::Studio => world.studio(ray, &surface, u),
+        Look::Natural => world.natural(ray, &surface, u, number),
+    };
+    // The ground fades into the horizon.
+    let share = match &world.model.ground {
+        Some(ground) if surface.object.is_none() => ground.share(surface.point),
+        _ => 1.0,
+    };
+    let Colour(behind) = if view.transparent { Colour([0.0; 3]) } else { world.model.sky.at_horizon() };
+    let faded = |colour: [f64; 3]| {
+        let shown = [0, 1, 2].map(|i| colour[i] * share + behind[i] * (1.0 - share));
+        hazed(world, ray, surface.t, shown)
+    };
+    let (_, pigment) = world.material(&surface);
+    Sample {
+        colour: faded(lit),
+        pigment: faded(pigment),
+        alpha: if view.transparent { share } else { 1.0 },
+        depth: (surface.point - eye.camera.at).dot(eye.frame[2]),
+        normal: surface.normal,
+        point: surface.point,
+        cost: surface.cost,
+        level: surface.level,
+        object: surface.object.map_or(world.model.objects.len() as u32, |i| i) + 1,
+        branch: surface.object.map_or(0, |_| surface.branch + 1),
+    }
+}
+
+/// A colour as it is seen through the air from this far along the ray.
+fn hazed(world: &World<'_>, ray: &Ray, far: f64, colour: [f64; 3]) -> [f64; 3] {
+    let Some(air) = &world.model.air else { return colour };
+    let left = air.through(ray.origin, ray.direction, far);
+    let Colour(haze) = world.model.sky.at_horizon();
+    [0, 1, 2].map(|i| haze[i] + (colour[i] - haze[i]) * left)
+}
