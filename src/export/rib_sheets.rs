@@ -41,11 +41,12 @@ pub(super) fn sheets(model: &Model, size: [u32; 2], digits: Digits) -> Vec<Sheet
     let far = far.chain(ground.as_ref().map(|sheet| sheet.far));
     let wall = far.fold((camera.look_at - camera.at).length(), f64::max) * BEHIND;
     let count = sky_squares(model, size);
+    let seen = |from, way: DVec3| model.hazed(from, way, f64::INFINITY, model.sky.colour(way));
     let mut grid = Grid::default();
     for square in squares(count, size) {
         let rays = square.map(|[x, y]| ray(camera, x, y));
         // To the wall, which stands across the view.
-        grid.polygon(rays.map(|(from, way)| (at_depth(camera, from, way, wall), model.sky.colour(way))).to_vec());
+        grid.polygon(rays.map(|(from, way)| (at_depth(camera, from, way, wall), seen(from, way))).to_vec());
     }
     let sky = Sheet { name: "sky", surface: CONSTANT.to_owned(), body: grid.text(digits), far: wall };
     std::iter::once(sky).chain(haze(model, size, wall, digits)).chain(ground).collect()

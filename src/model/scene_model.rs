@@ -2,7 +2,7 @@
 
 use super::{Air, Camera, Ground, Light, Look, Material, Object, Sky, Stroke};
 use crate::geom::{Bounds, Mark};
-use crate::math::DVec3;
+use crate::math::{Colour, DVec3};
 
 /// A scene as renderers see it.
 #[derive(Clone, Debug)]
@@ -38,6 +38,15 @@ impl Model {
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         self.objects.iter().map(Object::bounds).fold(Bounds::EMPTY, Bounds::union)
+    }
+
+    /// A colour as it is seen from `from` through the air, this far away along a unit `way`.
+    #[must_use]
+    pub fn hazed(&self, from: DVec3, way: DVec3, far: f64, colour: Colour) -> Colour {
+        let Some(air) = &self.air else { return colour };
+        let left = air.through(from, way, far);
+        let (Colour(own), Colour(haze)) = (colour, self.sky.at_horizon());
+        Colour([0, 1, 2].map(|i| haze[i] + (own[i] - haze[i]) * left))
     }
 
     /// Bytes of its objects in memory.

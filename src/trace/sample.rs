@@ -60,9 +60,12 @@ fn is_finished(view: &RenderSettings, samples: &[Sample]) -> bool {
 
 /// The sample along a camera ray, the `number`th of the picture; `u` are its random numbers.
 fn trace(world: &World<'_>, view: &RenderSettings, eye: &Eye, ray: &Ray, u: &[f64; DIMENSIONS], number: u64) -> Sample {
+    let hazed = |far: f64, colour: Colour| world.model.hazed(ray.origin, ray.direction, far, colour);
     let Some(surface) = world.closest(ray, &eye.within) else {
-        let Colour(sky) = if view.transparent { Colour([0.0; 3]) } else { world.model.sky.colour(ray.direction) };
-        let seen = if view.transparent { sky } else { hazed(world, ray, f64::INFINITY, sky) };
+        let Colour(seen) = match view.transparent {
+            true => Colour([0.0; 3]),
+            false => hazed(f64::INFINITY, world.model.sky.colour(ray.direction)),
+        };
         return Sample {
             colour: seen,
             pigment: seen,
@@ -88,8 +91,9 @@ fn trace(world: &World<'_>, view: &RenderSettings, eye: &Eye, ray: &Ray, u: &[f6
     };
     let Colour(behind) = if view.transparent { Colour([0.0; 3]) } else { world.model.sky.at_horizon() };
     let faded = |colour: [f64; 3]| {
-        let shown = [0, 1, 2].map(|i| colour[i] * share + behind[i] * (1.0 - share));
-        hazed(world, ray, surface.t, shown)
+        // The horizon has the colour of the haze.
+        let Colour(shown) = hazed(surface.t, Colour(colour));
+        [0, 1, 2].map(|i| shown[i] * share + behind[i] * (1.0 - share))
     };
     let (_, pigment) = world.material(&surface);
     Sample {
@@ -104,12 +108,4 @@ fn trace(world: &World<'_>, view: &RenderSettings, eye: &Eye, ray: &Ray, u: &[f6
         object: surface.object.map_or(world.model.objects.len() as u32, |i| i) + 1,
         branch: surface.object.map_or(0, |_| surface.branch + 1),
     }
-}
-
-/// A colour as it is seen through the air from this far along the ray.
-fn hazed(world: &World<'_>, ray: &Ray, far: f64, colour: [f64; 3]) -> [f64; 3] {
-    let Some(air) = &world.model.air else { return colour };
-    let left = air.through(ray.origin, ray.direction, far);
-    let Colour(haze) = world.model.sky.at_horizon();
-    [0, 1, 2].map(|i| haze[i] + (colour[i] - haze[i]) * left)
 }
