@@ -105,3 +105,60 @@ fn is_seen(camera: &Camera, at: DVec3, radius: f64) -> bool {
     let is_near = at.distance(camera.at) < 4.0 * radius;
     is_near || camera.project(at).is_some_and(|p| (-BEYOND..=1.0 + BEYOND).contains(&p.x) && p.y < 1.0 + 4.0 * BEYOND)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Projection;
+
+    fn camera(y: f64) -> Camera {
+        let projection = Projection::Perspective { angle: 0.8 };
+        Camera { at: DVec3::new(0.0, y, 1.6), look_at: DVec3::new(0.0, 0.0, 1.6), projection, aspect: 1.3 }
+    }
+
+    fn all(camera: &Camera) -> Vec<Instance> {
+        let ground: GroundSpec = toml::from_str("colour = \"#445522\"").unwrap();
+        let places = places(&ground, &GRASS, camera, &Stream::new(1, "grass"), &Memory::default()).unwrap();
+        assert!(places.len() == KINDS as usize && places.iter().all(|kind| kind.len() > 100));
+        places.into_iter().flatten().collect()
+    }
+
+    const GRASS: GrassSpec = GrassSpec { height: 0.2, colours: [Colour([0.1; 3]), Colour([0.2; 3])], reach: 200.0 };
+
+    #[test]
+    fn grass_covers_what_the_camera_sees() {
+        let camera = camera(-20.0);
+        let grass = all(&camera);
+        let far = |place: &Instance| place.at.truncate().distance(camera.at.truncate());
+        assert!(grass.iter().all(|place| far(place) <= 40.0 && place.at.z == 0.0));
+        // Near by, a piece on each square of the ground that is seen.
+        let mut random = Stream::new(2, "places");
+        let tries = 200_000;
+        let seen = (0..tries).filter(|_| {
+            let [x, y]: [f64; 2] = std::array::from_fn(|_| random.random::<f64>() * 40.0 - 20.0);
+            let p = camera.at.with_z(0.0) + DVec3::new(x, y, 0.0);
+            p.distance(camera.at.with_z(0.0)) < 20.0 && is_seen(&camera, p, 0.6)
+        });
+        let expected = seen.count() as f64 / f64::from(tries) * 1600.0 / 0.36;
+        let near = grass.iter().filter(|place| far(place) < 20.0).count() as f64;
+        assert!((near / expected - 1.0).abs() < 0.05, "{near} {expected}");
+        // Beyond it thins out.
+        let ring = |from: f64, to: f64| {
+            grass.iter().filter(|p| (from..to).contains(&far(p))).count() as f64 / (to * to - from * from)
+        };
+        assert!(ring(35.0, 40.0) < 0.3 * ring(10.0, 20.0));
+    }
+
+    #[test]
+    fn grass_stays_where_it_is_when_the_camera_moves() {
+        let [here, there] = [-20.0, -17.0].map(camera);
+        let is_near = |p: DVec3, camera: &Camera| p.distance(camera.at) < 19.0 && is_seen(camera, p, 0.6);
+        let of_both = |all: Vec<Instance>| -> Vec<Instance> {
+            let mut both: Vec<_> = all.into_iter().filter(|p| is_near(p.at, &here) && is_near(p.at, &there)).collect();
+            both.sort_by(|a, b| a.at.x.total_cmp(&b.at.x).then(a.at.y.total_cmp(&b.at.y)));
+            both
+        };
+        let (a, b) = (of_both(all(&here)), of_both(all(&there)));
+        assert!(a.len() > 100 && a == b);
+    }
+}

@@ -61,8 +61,9 @@ impl<'a> Pov<'a> {
             } else if let Some(object) = part.parse().ok().and_then(|i: usize| self.model.objects.get(i)) {
                 let (_, material) = &self.model.materials[object.material];
                 let texture = &self.values.materials[object.material].id;
-                let one = format!("{}_One", self.values.objects[part.parse::<usize>().unwrap_or(0)].id);
-                write_body(object, material.pattern.as_ref(), texture, &one, &mut out)?;
+                let values = &self.values.objects[part.parse::<usize>().unwrap_or(0)];
+                let posed = values.posed.as_deref().unwrap_or_default();
+                write_body(object, material.pattern.as_ref(), texture, posed, &mut out)?;
             }
         }
         Ok(())

@@ -56,7 +56,9 @@ pub(super) struct ObjectValues {
     keyword: &'static str,
     shadow: bool,
     texture: String,
-    /// What is declared once and posed, if it is: its mesh.
+    /// What is posed, if anything is: what it is declared as.
+    pub posed: Option<String>,
+    /// Its mesh, where it is declared: objects that pose the same have one.
     one: Option<String>,
     body: String,
 }
@@ -200,22 +202,30 @@ fn object_values(model: &Model, prefix: &str) -> Vec<ObjectValues> {
         let is_alone = model.objects.len() == 1;
         ids.push(if is_alone { prefix.to_owned() } else { part_identifier(prefix, &object.name, &ids) });
     }
-    let values = model.objects.iter().zip(ids).enumerate().map(|(i, (object, id))| {
+    let values = model.objects.iter().enumerate().map(|(i, object)| {
+        let posed = first_posed(model, i);
         let (name, material) = &model.materials[object.material];
         let texture = material_id(prefix, name);
         ObjectValues {
-            id,
+            id: ids[i].clone(),
             height: number(object.body.height(), object.digits),
             foot: vector(to_pov(object.instances[0].at), object.digits),
             places: object.instances[1..].iter().map(|place| placed(place, object.digits)).collect(),
             keyword: keyword(&object.body),
             shadow: object.shadow,
             texture: if material.pattern.is_some() { format!("{texture}_Plain") } else { texture },
-            one: matches!(object.body, Body::Posed(..)).then(|| mesh_mark(i)),
+            posed: posed.map(|first| format!("{}_One", ids[first])),
+            one: (posed == Some(i)).then(|| mesh_mark(i)),
             body: body_mark(i),
         }
     });
     values.collect()
+}
+
+/// The first object that poses the same mesh as object `i` does.
+fn first_posed(model: &Model, i: usize) -> Option<usize> {
+    let Body::Posed(own, _) = &model.objects[i].body else { return None };
+    model.objects.iter().position(|object| matches!(&object.body, Body::Posed(mesh, _) if mesh == own))
 }
 
 fn material_values(id: String, m: &Material) -> MaterialValues {

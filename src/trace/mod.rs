@@ -12,12 +12,14 @@ mod natural;
 mod render;
 mod sample;
 mod sampling;
+mod settings;
 mod shade;
 mod smooth;
 mod world;
 
 pub use film::{Data, Picture, RANKS, Ranks};
-pub use render::{RenderSettings, render};
+pub use render::render;
+pub use settings::RenderSettings;
 
 pub use crate::model::Look;
 pub use world::{SurfaceHit, World};

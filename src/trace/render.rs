@@ -8,6 +8,7 @@ use super::denoise::{self, Guide, denoise};
 use super::eye::Eye;
 use super::film::{Data, Picture, data, mean};
 use super::sample::sample;
+use super::settings::RenderSettings;
 use super::smooth::{self, FaceKey, smooth};
 use super::world::World;
 use crate::math::{Cancelled, Progress};
@@ -15,32 +16,6 @@ use crate::model::Look;
 
 /// Side of a tile, in pixels: small enough to balance the load, large enough for coherent rays.
 const TILE: u32 = 16;
-/// The parameters of a rendering.
-#[derive(Clone, Copy, Debug)]
-pub struct RenderSettings {
-    /// Size of the whole picture, in pixels.
-    pub size: [u32; 2],
-    /// The crop window: left, top, width, height, in pixels.
-    pub crop: [u32; 4],
-    /// The look.
-    pub look: Look,
-    /// Samples a pixel. In the exact look, 1 is the pixel's centre; n is POV-Ray's `+AM1` with `+R` the square root of n: a grid and
-    /// the centre.
-    pub samples: u32,
-    /// Omit the sky: alpha is the coverage by objects and ground.
-    pub transparent: bool,
-    /// Record [`Data`].
-    pub data: bool,
-}
-
-impl RenderSettings {
-    /// A whole picture of this size.
-    #[must_use]
-    pub fn new(size: [u32; 2], look: Look, samples: u32) -> Self {
-        Self { size, crop: [0, 0, size[0], size[1]], look, samples, transparent: false, data: false }
-    }
-}
-
 /// Renders `world`.
 ///
 /// # Errors

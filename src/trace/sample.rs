@@ -3,8 +3,8 @@
 use super::denoise::Guide;
 use super::eye::Eye;
 use super::film::Sample;
-use super::render::RenderSettings;
 use super::sampling::{DIMENSIONS, numbers};
+use super::settings::RenderSettings;
 use super::world::World;
 use crate::bvh::Ray;
 use crate::math::{Colour, DVec3};

@@ -146,16 +146,17 @@ fn levels_and_leaves_are_declared() {
     for name in [
         "Oak_Summer_Tree_Level_0",
         "Oak_Summer_Tree_Level_3",
-        "Oak_Summer_Tree_Oak",
-        "Oak_Summer_Tree_Oak_One",
+        "Oak_Summer_Tree_Oak_1",
+        "Oak_Summer_Tree_Oak_9",
+        "Oak_Summer_Tree_Oak_1_One",
         "Oak_Summer",
     ] {
         assert!(inc.contains(&format!("#declare {name} =")), "{name} is missing");
     }
-    let leaves = inc.matches("object{Oak_Summer_Tree_Oak_One matrix<").count();
+    let leaves = inc.matches("object{Oak_Summer_Tree_Oak_1_One matrix<").count();
     assert!(leaves > 10_000, "{leaves} leaves");
-    // One mesh serves them all.
-    assert_eq!(inc.matches("mesh2 {").count(), 1);
+    // One mesh serves them all, whatever their colour; grass has five.
+    assert_eq!(inc.matches("mesh2 {").count(), 1 + 5);
 }
 
 /// The mesh of a whole tree is closed and oriented; what has spheres and cones is no mesh.

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use crate::support::sample::sample;
 use crate::support::{lichtenberg, require_povray, run_in, scene_names, small_variant, succeed_in, text};
-use lichtenberg::files::{Rgba, decode_png};
+use lichtenberg::files::{Rgba, decode_png, stage_names};
 use rayon::prelude::*;
 
 /// Runs povray itself on `scene` in `folder`; it must succeed without a warning.
@@ -48,6 +48,23 @@ fn every_scene_renders_without_a_warning() {
         let picture = decode_png(&fs::read(&path).unwrap()).unwrap();
         assert_eq!((picture.width, picture.height), (160, 120));
         assert!(covered(&picture) > 0.005, "{name} is blank");
+    });
+}
+
+/// Every stage, about a tree.
+#[test]
+fn every_stage_renders_without_a_warning() {
+    require_povray();
+    assert_eq!(stage_names().len(), 4);
+    stage_names().par_iter().for_each(|stage| {
+        let folder = tempfile::tempdir().unwrap();
+        let change = format!("stage={stage}");
+        let call = ["render", "elm", "--set", &change, "--with", "povray", "--size", "160x120", "--quality", "draft"];
+        let output = run_in(folder.path(), &[&call[..], &["-o", "elm.png"]].concat());
+        let said = text(&output.stderr);
+        assert!(output.status.success() && !said.contains("Warning"), "{stage}: {said}");
+        let picture = decode_png(&fs::read(folder.path().join("elm.png")).unwrap()).unwrap();
+        assert!(covered(&picture) > 0.3, "{stage} has no ground");
     });
 }
 
