@@ -17,6 +17,8 @@ use crate::trace::{RenderSettings, World};
 
 /// Bytes that a pixel takes while it is traced; and with all that an EXR keeps of it.
 const FILM_BYTES: [u64; 2] = [32, 164];
+/// And what guides its filter in the natural look, with what that filters.
+const GUIDE_BYTES: u64 = 96;
 /// The same while it is written, when the scene is gone: of an EXR also layers, these once more, and what they are packed to.
 const PIXEL_BYTES: [u64; 2] = [64, 520];
 
@@ -98,7 +100,9 @@ fn pixels([width, height]: [u32; 2]) -> u64 {
 /// Traces `view` of `model` within `memory`.
 pub fn trace(model: &Model, view: &RenderSettings, memory: &Memory, progress: &Progress) -> Result<Drawn, Failure> {
     let [_, _, width, height] = view.crop;
-    let needed = World::bytes_needed(model) + pixels([width, height]) * FILM_BYTES[usize::from(view.data)];
+    let guides = if view.look == Look::Natural { GUIDE_BYTES } else { 0 };
+    let film = pixels([width, height]) * (FILM_BYTES[usize::from(view.data)] + guides);
+    let needed = World::bytes_needed(model) + film;
     memory
         .beside(model.bytes() as u64)
         .ask(needed)

@@ -167,6 +167,8 @@ pub fn reads_back(model: &Model, name: &str) {
             pattern.figure().name()
         } else if material.diffuse == 0.0 && material.ambient == 0.0 {
             "constant"
+        } else if material.through > 0.0 {
+            "leaf"
         } else if material.specular.max(material.phong) > 0.0 {
             "plastic"
         } else {

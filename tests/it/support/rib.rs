@@ -315,6 +315,7 @@ pub fn read(text: &str, archive: &str) -> World {
                 assert!(n.len() == 8 && n.chunks(2).all(|st| st == [n[0], 0.0]), "{n:?}");
                 assert!(n[0] >= 0.0 || n[0] == -1.0, "{n:?}");
             }
+            "Atmosphere" => assert_eq!(given.texts[0], "fog", "a shader that every renderer has"),
             "Displacement" | "version" | "Option" | "Display" | "Quantize" | "Exposure" | "PixelSamples"
             | "PixelFilter" | "ShadingRate" | "MakeShadow" => {}
             _ => panic!("{request} is not in the portable subset"),
