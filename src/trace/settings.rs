@@ -16,7 +16,7 @@ pub struct RenderSettings {
     pub samples: u32,
     /// Omit the sky: alpha is the coverage by objects and ground.
     pub transparent: bool,
-    /// Record [`Data`].
+    /// Record [`super::Data`].
     pub data: bool,
 }
 
