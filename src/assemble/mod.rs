@@ -3,9 +3,11 @@
 //! Later stages need never handle a scene's own units or names: the model stands on its own. Everything here can be
 //! cancelled.
 
+mod background;
 mod check;
 mod dress;
 mod error;
+mod grass;
 mod ground;
 mod grow;
 mod lights;
@@ -14,6 +16,8 @@ mod model;
 mod plants;
 mod recipe;
 mod related;
+mod relief;
+mod scattered;
 
 pub use check::check;
 pub use error::{AssembleError, ObjectKey, ObjectProblem};

@@ -8,7 +8,9 @@ use serde::Deserialize;
 use super::AssembleError;
 use crate::grow::{GrowError, Key, Problem, Step, waits_for_itself};
 use crate::math::{Colour, DVec3, Degrees};
-use crate::model::{Air, CameraSpec, GlowSpec, GroundSpec, Instance, Light, Look, Material, Mesh, Sky, ViewFrame};
+use crate::model::{
+    Air, BackgroundSpec, CameraSpec, GlowSpec, GroundSpec, Instance, Light, Look, Material, Mesh, Sky, ViewFrame,
+};
 use crate::raster::{Grey, Plate};
 use crate::skin::{LeavesSpec, Painting, Skin, ThornsSpec};
 
@@ -62,6 +64,8 @@ pub struct Recipe {
     pub lights: Vec<Light>,
     /// The ground.
     pub ground: Option<GroundSpec>,
+    /// Plants far behind.
+    pub background: Option<BackgroundSpec>,
     /// What is behind everything.
     pub sky: Sky,
     /// Haze, if any.
@@ -85,6 +89,7 @@ impl Default for Recipe {
             camera: CameraSpec::default(),
             lights: Self::two_suns(),
             ground: None,
+            background: None,
             sky: Self::pale_sky(),
             air: None,
             look: Look::Studio,

@@ -8,7 +8,7 @@ use super::identifier::{identifier, part_identifier, plain};
 use super::pov_text::{PLAIN, colour, to_pov};
 use crate::math::DVec3;
 use crate::model::{
-    Body, Camera, Digits, Dome, FADE, Ground, Instance, Light, Look, Material, Model, Pattern, Projection, Sky,
+    Body, Camera, Digits, Dome, FADE, Ground, Instance, Light, Look, Material, Model, Object, Pattern, Projection, Sky,
 };
 
 /// With more primitives than this the scene takes the objects inline, since `object { Name }` copies a union.
@@ -213,13 +213,18 @@ fn object_values(model: &Model, prefix: &str) -> Vec<ObjectValues> {
             places: object.instances[1..].iter().map(|place| placed(place, object.digits)).collect(),
             keyword: keyword(&object.body),
             shadow: object.shadow,
-            texture: if material.pattern.is_some() { format!("{texture}_Plain") } else { texture },
+            texture: if is_plain(object, material) { format!("{texture}_Plain") } else { texture },
             posed: posed.map(|first| format!("{}_One", ids[first])),
             one: (posed == Some(i)).then(|| mesh_mark(i)),
             body: body_mark(i),
         }
     });
     values.collect()
+}
+
+/// Has the object as a whole the mean of its material's pattern, which its limbs alone show?
+fn is_plain(object: &Object, material: &Material) -> bool {
+    material.pattern.is_some_and(|pattern| object.body.limbs().is_some() || pattern.figure().follows_limbs())
 }
 
 /// The first object that poses the same mesh as object `i` does.

@@ -40,7 +40,7 @@ pub(super) fn write_object(
             "Displacement \"thorns\" \"float height\" [{height}] \"float radius\" [{radius}] \"float apart\" [{apart}]"
         )?;
     }
-    let poses: &[Pose] = if let Body::Posed(_, poses) = &object.body { poses } else { &[] };
+    let poses = object.body.poses();
     if object.instances.len() == 1 && poses.is_empty() {
         write_primitives(object, material, object.instances[0].at, out)?;
         return writeln!(out, "AttributeEnd");

@@ -37,7 +37,7 @@ pub(super) struct Sheet {
 pub(super) fn sheets(model: &Model, size: [u32; 2], digits: Digits) -> Vec<Sheet> {
     let ground = ground(model, size, digits);
     let camera = &model.camera;
-    let far = model.bounds().corners().map(|p| depth(camera, p)).into_iter();
+    let far = model.bounds_of_all().corners().map(|p| depth(camera, p)).into_iter();
     let far = far.chain(ground.as_ref().map(|sheet| sheet.far));
     let wall = far.fold((camera.look_at - camera.at).length(), f64::max) * BEHIND;
     let count = sky_squares(model, size);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{GrassSpec, Pattern};
+use super::{GrassSpec, Pattern, ReliefSpec};
 use crate::math::{Colour, DVec3, Degrees, Point};
 use crate::raster::Panorama;
 
@@ -210,8 +210,8 @@ impl Light {
     }
 }
 
-/// A level ground.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+/// The ground, level but for its relief.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GroundSpec {
     /// Its colour.
@@ -228,6 +228,14 @@ pub struct GroundSpec {
     #[serde(default)]
     #[schemars(range(min = 1e-3, max = 1e9))]
     pub reach: Option<f64>,
+    /// Rises of it, layer over layer.
+    #[serde(default)]
+    #[schemars(length(max = 8))]
+    pub relief: Vec<ReliefSpec>,
+    /// How far it rises around limbs that come out of it, in their radii: earth, moss or snow at the foot of a trunk.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub mound: f64,
     /// Grass on it.
     #[serde(default)]
     pub grass: Option<GrassSpec>,

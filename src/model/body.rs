@@ -113,6 +113,12 @@ impl Body {
         }
     }
 
+    /// Where its mesh is posed; empty for what is not.
+    #[must_use]
+    pub fn poses(&self) -> &[Pose] {
+        if let Self::Posed(_, poses) = self { poses } else { &[] }
+    }
+
     /// The limbs, where it is made of them.
     #[must_use]
     pub fn limbs(&self) -> Option<&Limbs> {

@@ -5,6 +5,7 @@
 
 mod air;
 mod appearance;
+mod background;
 mod body;
 mod body_error;
 mod camera;
@@ -18,6 +19,7 @@ mod instance;
 mod look;
 mod object;
 pub mod pattern;
+mod relief;
 mod scene_model;
 mod sky_spec;
 mod stroke;
@@ -25,6 +27,7 @@ mod view;
 
 pub use air::Air;
 pub use appearance::{FADE, Ground, GroundSpec, Light, LightSpec, Material, Sky};
+pub use background::BackgroundSpec;
 pub use body::{Ball, Body, Limbs, Mesh, Pose, Thorns};
 pub use body_error::BodyError;
 pub use camera::{Camera, CameraError, CameraSpec, Projected, Projection};
@@ -37,6 +40,7 @@ pub use instance::Instance;
 pub use look::Look;
 pub use object::Object;
 pub use pattern::Pattern;
+pub use relief::{Relief, ReliefSpec};
 pub use scene_model::{Model, to_world};
 pub use sky_spec::{DaylightSpec, SkySpec};
 pub use stroke::{CORE, CloudLight, GlowSpec, Halo, NearGlow, Piece, Stroke};

@@ -19,6 +19,8 @@ pub struct Object {
     pub digits: Digits,
     /// Does it cast shadows?
     pub shadow: bool,
+    /// Does it stand about what the scene is of, so that it does not count for its size?
+    pub is_scenery: bool,
 }
 
 impl Object {
@@ -26,7 +28,7 @@ impl Object {
     #[must_use]
     pub fn new(name: &str, body: Body, foot: DVec3, digits: Digits, material: usize) -> Self {
         let instances = vec![Instance::at(digits.round_point(foot))];
-        Self { name: name.to_owned(), instances, material, body, digits, shadow: true }
+        Self { name: name.to_owned(), instances, material, body, digits, shadow: true, is_scenery: false }
     }
 
     /// The object that `mesh` is, with its foot at `foot` in the world.

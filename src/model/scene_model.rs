@@ -34,9 +34,16 @@ pub struct Model {
 }
 
 impl Model {
-    /// A box around all objects.
+    /// A box around all objects but scenery.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
+        let own = self.objects.iter().filter(|object| !object.is_scenery);
+        own.map(Object::bounds).fold(Bounds::EMPTY, Bounds::union)
+    }
+
+    /// A box around all objects.
+    #[must_use]
+    pub fn bounds_of_all(&self) -> Bounds {
         self.objects.iter().map(Object::bounds).fold(Bounds::EMPTY, Bounds::union)
     }
 

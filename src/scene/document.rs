@@ -13,7 +13,9 @@ use crate::assemble::LightsSpec;
 use crate::geom::{MarkKind, ShapeSpec};
 use crate::grow::{SpaceSpec, Step, StepSpec};
 use crate::math::{DVec3, Degrees, Point, Ref};
-use crate::model::{Air, CameraSpec, GlowSpec, GroundSpec, LightSpec, Look, Material, SkySpec, ViewSpec};
+use crate::model::{
+    Air, BackgroundSpec, CameraSpec, GlowSpec, GroundSpec, LightSpec, Look, Material, SkySpec, ViewSpec,
+};
 use crate::skin::{LeavesSpec, PaintSpec, Skin, ThornsSpec};
 
 /// A scene: named growth steps in named spaces, the objects that they become, and how these are seen.
@@ -82,6 +84,9 @@ pub struct Scene {
     /// The ground; by default none.
     #[serde(default)]
     pub ground: Option<GroundSpec>,
+    /// Its plants once more, far behind; by default none.
+    #[serde(default)]
+    pub background: Option<BackgroundSpec>,
     /// What is behind everything; by default white for flat scenes, black with a `[view]`, a
     /// pale sky in space.
     #[serde(default)]

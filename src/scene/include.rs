@@ -17,10 +17,10 @@ const BY_KEY: [&str; 5] = ["space", "grow", "object", "material", "claim"];
 /// Tables by name whose items are taken over whole: an item is one of several kinds.
 const WHOLE: [&str; 3] = ["shape", "light", "animation"];
 /// Tables that are taken over key by key.
-const PLAIN: [&str; 4] = ["air", "camera", "ground", "view"];
+const PLAIN: [&str; 5] = ["air", "background", "camera", "ground", "view"];
 
 /// Where a scene stands and how it is lit.
-const PLACE: [&str; 5] = ["air", "ground", "light", "look", "sky"];
+const PLACE: [&str; 6] = ["air", "background", "ground", "light", "look", "sky"];
 
 /// Fills `root` with what the files that it includes give and it does not.
 pub(super) fn include(root: &mut Entry, folder: &Folder, mistakes: &mut Vec<Mistake>) {
@@ -200,8 +200,9 @@ mod tests {
         let meadow = with("stage = \"meadow\"", &[]).unwrap();
         let own = with("stage = \"meadow\"\n[sky]\ndaylight = { hour = 9 }\n[ground]\nheight = 1", &[]).unwrap();
         assert_eq!(meadow.look, crate::model::Look::Natural);
-        assert!(meadow.ground.unwrap().grass.is_some() && meadow.air.is_some());
-        assert_eq!((own.ground.unwrap().height, own.ground.unwrap().grass), (1.0, meadow.ground.unwrap().grass));
+        let [its, mine] = [&meadow, &own].map(|recipe| recipe.ground.as_ref().unwrap());
+        assert!(its.grass.is_some() && meadow.air.is_some());
+        assert_eq!((mine.height, mine.grass), (1.0, its.grass));
         assert_ne!(own.sky, meadow.sky);
         // Another kind of sky takes nothing from the stage's.
         let plain = with("stage = \"meadow\"\n[sky]\ncolour = \"#ffffff\"", &[]).unwrap();

@@ -55,6 +55,7 @@ pub(super) fn resolve(mut scene: Scene, source: &Source, tree: &Entry, mistakes:
         camera,
         lights,
         ground: scene.ground,
+        background: scene.background,
         air: scene.air,
         look: scene.look.unwrap_or_else(|| look_of(scene.sky.as_ref())),
         sky: sky?,

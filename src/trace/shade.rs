@@ -9,6 +9,9 @@ use crate::model::{Light, Material};
 /// POV-Ray's shadow tolerance: nothing nearer casts a shadow (`reference/povray.md`), in scene units.
 const SHADOW: f64 = 1e-3;
 
+/// Rays start at least this far off a surface, over how far that is from the origin: some ten times what single precision loses.
+const FAR: f64 = 1e-6;
+
 impl World<'_> {
     /// The radiance of `surface` towards the origin of `ray` by POV-Ray's local illumination (`reference/povray.md`): one shadow ray
     /// for each light.
@@ -99,7 +102,9 @@ impl World<'_> {
 
     /// Where rays start from `surface`, on the side of its normal where `facing` is positive.
     fn beside(&self, surface: &SurfaceHit, facing: f64) -> DVec3 {
-        surface.point + surface.normal * self.off.copysign(facing)
+        // Far away single precision loses more.
+        let off = self.off.max(surface.point.abs().max_element() * FAR);
+        surface.point + surface.normal * off.copysign(facing)
     }
 
     /// The material of a surface, and its colour there.

@@ -30,7 +30,7 @@ pub struct World<'a> {
 /// An object in its own space.
 enum ObjectShape<'a> {
     Limbs(LimbShape<'a>),
-    Mesh(&'a Mesh, Triangles),
+    Mesh(&'a Mesh, Triangles, Option<(Expr, f64)>),
 }
 
 /// Round cones.
@@ -174,7 +174,10 @@ impl<'a> ObjectShape<'a> {
                 Self::Limbs(LimbShape::new(limbs, pattern))
             }
             Body::Mesh(mesh) | Body::Posed(mesh, _) => {
-                Self::Mesh(mesh, Triangles::new(mesh.triangles.len(), |i| triangle(mesh, i)))
+                let pattern = model.materials[object.material].1.pattern;
+                let pattern = pattern.filter(|pattern| !pattern.figure().follows_limbs());
+                let pattern = pattern.map(|pattern| (pattern.figure().share(), pattern.figure().size()));
+                Self::Mesh(mesh, Triangles::new(mesh.triangles.len(), |i| triangle(mesh, i)), pattern)
             }
         }
     }
@@ -182,23 +185,36 @@ impl<'a> ObjectShape<'a> {
     fn bounds(&self) -> Bounds {
         match self {
             Self::Limbs(limbs) => limbs.cones.bounds(),
-            Self::Mesh(_, triangles) => triangles.bounds(),
+            Self::Mesh(_, triangles, _) => triangles.bounds(),
         }
     }
 
     fn closest(&self, ray: &Ray) -> Option<Hit> {
         match self {
             Self::Limbs(limbs) => limbs.cones.closest(ray),
-            Self::Mesh(_, triangles) => triangles.closest(ray),
+            Self::Mesh(_, triangles, _) => triangles.closest(ray),
         }
     }
 
     fn is_blocked(&self, ray: &Ray) -> bool {
         match self {
             Self::Limbs(limbs) => limbs.cones.is_blocked(ray),
-            Self::Mesh(_, triangles) => triangles.is_blocked(ray),
+            Self::Mesh(_, triangles, _) => triangles.is_blocked(ray),
         }
     }
+}
+
+/// The normal of a smooth mesh on the side from which `way` comes to its triangle, whose own normal is `flat`; where it looks the
+/// other way, as it may behind a crest, the nearest one that does not.
+fn towards(way: DVec3, flat: DVec3, normal: DVec3) -> DVec3 {
+    let normal = if flat.dot(way) > 0.0 { -normal } else { normal };
+    let away = normal.dot(way);
+    if away > 0.0 { (normal - way * away).normalize_or(normal) } else { normal }
+}
+
+/// The share of a pattern at a place, which exporters have with y up.
+fn patterned(share: &Expr, size: f64, p: DVec3) -> f64 {
+    share.at(DVec3::new(p.x, p.z, p.y) / size)
 }
 
 fn triangle(mesh: &Mesh, i: usize) -> Triangle {
@@ -326,7 +342,7 @@ impl<'a> World<'a> {
     fn surface(&self, ray: &Ray, instance: u32, t: f64, id: u32) -> SurfaceHit {
         let (object, place) = &self.instances[instance as usize];
         match &self.shapes[*object as usize] {
-            ObjectShape::Mesh(mesh, _) => self.on_mesh(ray, instance, t, id, mesh),
+            ObjectShape::Mesh(mesh, _, pattern) => self.on_mesh(ray, instance, t, id, (mesh, pattern.as_ref())),
             ObjectShape::Limbs(shape) => {
                 let (own, _) = place.ray(ray);
                 let (cone, balls) = shape.cone(id);
@@ -374,10 +390,7 @@ impl<'a> World<'a> {
             branch: 0,
             cost: 0.0,
             level: 0,
-            pattern: self.ground.as_ref().map_or(0.0, |(share, size)| {
-                // Exporters have y up.
-                share.at(DVec3::new(point.x, point.z, point.y) / *size)
-            }),
+            pattern: self.ground.as_ref().map_or(0.0, |(share, size)| patterned(share, *size, point)),
             is_inside: false,
         })
     }
@@ -415,7 +428,14 @@ impl<'a> World<'a> {
         }
     }
 
-    fn on_mesh(&self, ray: &Ray, instance: u32, t: f64, id: u32, mesh: &Mesh) -> SurfaceHit {
+    fn on_mesh(
+        &self,
+        ray: &Ray,
+        instance: u32,
+        t: f64,
+        id: u32,
+        (mesh, pattern): (&Mesh, Option<&(Expr, f64)>),
+    ) -> SurfaceHit {
         let (index, place) = &self.instances[instance as usize];
         let object = &self.model.objects[*index as usize];
         let triangle = triangle(mesh, id as usize);
@@ -433,17 +453,20 @@ impl<'a> World<'a> {
             }
             None => flat,
         };
-        let normal = place.normal(normal);
+        let [flat, normal] = [flat, normal].map(|normal| place.normal(normal));
         SurfaceHit {
             t,
             point: ray.at(t),
-            normal: if normal.dot(ray.direction) > 0.0 { -normal } else { normal },
+            normal: towards(ray.direction, flat, normal),
             object: Some(*index),
             branch: self.branches[*index as usize],
             cost: 0.0,
             level: 0,
-            // Patterns follow limbs; a mesh has none.
-            pattern: self.model.materials[object.material].1.pattern.map_or(0.0, |pattern| pattern.figure().mean()),
+            // It has no limbs that a pattern could follow.
+            pattern: match pattern {
+                Some((share, size)) => patterned(share, *size, own.at(t / scale)),
+                None => self.model.materials[object.material].1.pattern.map_or(0.0, |p| p.figure().mean()),
+            },
             is_inside: false,
         }
     }

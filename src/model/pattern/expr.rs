@@ -108,6 +108,12 @@ impl Expr {
         Self::pair(Operation::Max, self, other.into())
     }
 
+    /// It, or 0 or 1 where it is less or more.
+    #[must_use]
+    pub fn share(self) -> Self {
+        Self::from(1.0).min(Self::from(0.0).max(self))
+    }
+
     fn pair(operation: Operation, a: Self, b: Self) -> Self {
         Self::Pair(operation, Box::new(a), Box::new(b))
     }

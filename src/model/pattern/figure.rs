@@ -22,4 +22,9 @@ pub trait Figure {
 
     /// The share of its colour at a place, from 0 to 1.
     fn share(&self) -> Expr;
+
+    /// Has it a direction, along limbs, so that a mesh without any shows its mean alone?
+    fn follows_limbs(&self) -> bool {
+        true
+    }
 }

@@ -53,6 +53,6 @@ impl Figure for Moss {
     fn share(&self) -> Expr {
         let across = Expr::from(1e-6).max((Expr::X * Expr::X + Expr::Z * Expr::Z).sqrt());
         let share = waves(&PATCHES) * PATCH + Expr::X / across * UPPER - LEAST;
-        Expr::from(1.0).min(Expr::from(0.0).max(share))
+        share.share()
     }
 }

@@ -57,10 +57,19 @@ impl Figure for Mottle {
     }
 
     fn share(&self) -> Expr {
-        let [large, small, smallest] = WEIGHTS;
-        let sum = waves(&LARGE) * large + waves(&SMALL) * small + waves(&SMALLEST) * smallest + 0.5;
-        Expr::from(1.0).min(Expr::from(0.0).max(sum))
+        patches()
     }
+
+    fn follows_limbs(&self) -> bool {
+        false
+    }
+}
+
+/// Patches of several sizes, the larger ones about one and a half units wide: from 0 to 1, half of it on the mean.
+#[must_use]
+pub fn patches() -> Expr {
+    let [large, small, smallest] = WEIGHTS;
+    (waves(&LARGE) * large + waves(&SMALL) * small + waves(&SMALLEST) * smallest + 0.5).share()
 }
 
 #[cfg(test)]
