@@ -175,9 +175,14 @@ plane {
 #include "{{ stem }}.inc"
 {% if not inline %}
 {% for object in objects %}
-object { {{ object.id }} translate {{ object.id }}_Foot }
+object { {{ object.id }} {{ object.turned }}translate {{ object.id }}_Foot }
 {% for place in object.places %}
 object { {{ object.id }} {{ place }} }
 {% endfor %}
 {% endfor %}
+{% endif %}
+{% if stage %}
+// What stands about it.
+#include "{{ stage[0] }}.inc"
+object { {{ stage[1] }} }
 {% endif %}

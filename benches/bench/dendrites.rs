@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use crate::Failure;
 use crate::clock::median;
-use lichtenberg::export::{Origin, Pov, Rib, RibOptions, Templates};
+use lichtenberg::export::{Origin, Pov, Rib, RibOptions, RibPart, Templates};
 use lichtenberg::files::{Folder, embedded_scenes};
 use lichtenberg::geom::Surface;
 use lichtenberg::grow::Grown;
@@ -168,7 +168,7 @@ fn moss() -> Result<(), Failure> {
     let mut bytes = [0_u64; 2];
     Pov::new(&model, &templates, "moss", scene.recipe.size, &origin).write_inc(Count(&mut bytes[0]))?;
     Rib::new(&model, &templates, "moss", scene.recipe.size, &origin, RibOptions::default())
-        .write_archive(Count(&mut bytes[1]))?;
+        .write_part(RibPart::Archive, Count(&mut bytes[1]))?;
     let written = begun.elapsed().as_secs_f64();
     let view = RenderSettings::new(scene.recipe.size, Look::Studio, 4);
     render(&World::new(&model), &view, &Progress::default())?;

@@ -55,8 +55,8 @@ impl Format {
     /// The files that it may make of a scene called `name`.
     pub fn files(self, name: &str) -> Vec<String> {
         let endings: &[&str] = match self {
-            Self::Pov => &[".inc", ".pov", ".ini", "-sky.exr"],
-            Self::Rib => &[".rib", ".archive.rib", ".casters.rib"],
+            Self::Pov => &[".inc", "-stage.inc", ".pov", ".ini", "-sky.exr"],
+            Self::Rib => &[".rib", ".archive.rib", ".casters.rib", ".stage.rib"],
             Self::Svg => &[".svg"],
             Self::Obj => &[".obj"],
             Self::Ply => &[".ply"],

@@ -8,7 +8,7 @@ use flate2::{Compression, GzBuilder};
 
 use super::error::Failure;
 use super::shown;
-use crate::export::{Pov, Rib, Templates};
+use crate::export::{Pov, Rib, RibPart, Templates};
 use crate::files::{encode_exr, is_edited, seal, write_atomic, write_bytes};
 
 /// The templates, those in `folder` in place of the program's own.
@@ -42,7 +42,7 @@ pub struct Written {
     pub kept: Vec<PathBuf>,
 }
 
-/// Writes NAME.inc, always, and NAME.pov and NAME.ini, unless they were edited.
+/// Writes NAME.inc, with NAME-stage.inc, always, and NAME.pov and NAME.ini, unless they were edited.
 pub fn write_pov(pov: &Pov<'_>, folder: &Path, name: &str, force: bool) -> Result<Written, Failure> {
     let inc = folder.join(format!("{name}.inc"));
     // Filled in before anything is written, so that a wrong template changes no file.
@@ -56,6 +56,11 @@ pub fn write_pov(pov: &Pov<'_>, folder: &Path, name: &str, force: bool) -> Resul
     }
     write_atomic(&inc, |out| pov.write_inc(out)).map_err(|e| failure(&inc, e))?;
     let mut written = Written { files: vec![inc], kept: Vec::new() };
+    if pov.has_stage() {
+        let path = folder.join(format!("{name}-stage.inc"));
+        write_atomic(&path, |out| pov.write_stage(out)).map_err(|e| failure(&path, e))?;
+        written.files.push(path);
+    }
     if let Some((sky, strength)) = pov.sky() {
         let path = folder.join(format!("{name}-sky.exr"));
         write_atomic(&path, |out| out.write_all(&encode_exr(&sky.layers(strength))?)).map_err(|e| failure(&path, e))?;
@@ -67,16 +72,17 @@ pub fn write_pov(pov: &Pov<'_>, folder: &Path, name: &str, force: bool) -> Resul
     Ok(written)
 }
 
-/// Writes NAME.archive.rib, always, and NAME.rib, unless it was edited; the shaders that the scene uses and no renderer has.
+/// Writes NAME.archive.rib and what else belongs to it, always, and NAME.rib, unless it was edited; the shaders that the scene uses and no renderer has.
 pub fn write_rib(rib: &Rib<'_>, folder: &Path, name: &str, gzip: bool, force: bool) -> Result<Written, Failure> {
     let archive = folder.join(format!("{name}.archive.rib"));
     let scene = folder.join(format!("{name}.rib"));
     let text = seal("#", &rib.scene().map_err(|e| failure(&scene, e))?);
     let shaders = rib.shaders().map_err(|e| failure(&scene, e))?;
     let mut written = Written { files: Vec::new(), kept: Vec::new() };
-    let casters = rib.has_casters().then(|| (folder.join(format!("{name}.casters.rib")), true));
-    for (path, is_casters) in std::iter::once((archive, false)).chain(casters) {
-        let write = |out: &mut dyn Write| if is_casters { rib.write_casters(out) } else { rib.write_archive(out) };
+    let casters = rib.has_casters().then(|| (folder.join(format!("{name}.casters.rib")), RibPart::Casters));
+    let stage = rib.has_stage().then(|| (folder.join(format!("{name}.stage.rib")), RibPart::Stage));
+    for (path, part) in std::iter::once((archive, RibPart::Archive)).chain(casters).chain(stage) {
+        let write = |out: &mut dyn Write| rib.write_part(part, out);
         write_atomic(&path, |out| {
             if !gzip {
                 return write(out);

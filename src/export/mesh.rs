@@ -57,10 +57,10 @@ impl<'a> Faces<'a> {
     }
 }
 
-/// Every object as triangles.
+/// Every object as triangles, but scenery.
 fn objects(model: &Model) -> Result<Vec<Faces<'_>>, NoMesh> {
     let mut all = Vec::new();
-    for object in &model.objects {
+    for object in model.objects.iter().filter(|object| !object.is_scenery) {
         let (mesh, poses) = object.body.mesh().ok_or_else(|| NoMesh::Cones(object.name.clone()))?;
         all.push(Faces { object, mesh, poses });
     }

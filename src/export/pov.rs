@@ -4,7 +4,7 @@
 use std::io::{self, Write};
 
 use super::pov_body::{write_body, write_mesh};
-use super::pov_values::{PovValues, values};
+use super::pov_values::{PovValues, stage_values, values};
 use super::{Origin, TemplateError, Templates};
 use crate::model::{Body, Digits, Model, Sky};
 use crate::raster::Panorama;
@@ -17,13 +17,16 @@ pub struct Pov<'a> {
     model: &'a Model,
     templates: &'a Templates,
     values: PovValues,
+    /// Of what stands about it.
+    stage: Option<PovValues>,
 }
 
 impl<'a> Pov<'a> {
     /// `name` gives the files their stem and the declared names their prefix; `size` is the picture's, in pixels.
     #[must_use]
     pub fn new(model: &'a Model, templates: &'a Templates, name: &str, size: [u32; 2], origin: &Origin) -> Self {
-        Self { model, templates, values: values(model, name, size, origin) }
+        let values = values(model, name, size, origin);
+        Self { model, templates, stage: stage_values(model, &values), values }
     }
 
     /// The identifier that is 1 for the exact look, 0 for the studio's.
@@ -47,8 +50,26 @@ impl<'a> Pov<'a> {
     ///
     /// # Errors
     /// [`io::ErrorKind::InvalidData`] around a [`TemplateError`], or what `out` says.
-    pub fn write_inc(&self, mut out: impl Write) -> io::Result<()> {
-        let text = self.fill("scene.inc")?;
+    pub fn write_inc(&self, out: impl Write) -> io::Result<()> {
+        self.write_objects(&self.values, out)
+    }
+
+    /// Is there something that stands about it, a file of its own?
+    #[must_use]
+    pub fn has_stage(&self) -> bool {
+        self.stage.is_some()
+    }
+
+    /// Writes `NAME-stage.inc`, if there is something that stands about it.
+    ///
+    /// # Errors
+    /// As [`Pov::write_inc`].
+    pub fn write_stage(&self, out: impl Write) -> io::Result<()> {
+        self.stage.as_ref().map_or(Ok(()), |values| self.write_objects(values, out))
+    }
+
+    fn write_objects(&self, values: &PovValues, mut out: impl Write) -> io::Result<()> {
+        let text = self.fill("scene.inc", values)?;
         // Bodies stand in the text as marks between control characters.
         for (i, part) in text.split('\u{1}').enumerate() {
             if i % 2 == 0 {
@@ -58,11 +79,14 @@ impl<'a> Pov<'a> {
                 if let Some(Body::Posed(mesh, _)) = object.map(|object| &object.body) {
                     write_mesh(mesh, Digits(MESH_DIGITS), &mut out)?;
                 }
-            } else if let Some(object) = part.parse().ok().and_then(|i: usize| self.model.objects.get(i)) {
+            } else if let Some(of) =
+                part.parse().ok().and_then(|i: usize| values.objects.iter().find(|of| of.number == i))
+            {
+                let object = &self.model.objects[of.number];
                 let (_, material) = &self.model.materials[object.material];
-                let texture = &self.values.materials[object.material].id;
-                let values = &self.values.objects[part.parse::<usize>().unwrap_or(0)];
-                let posed = values.posed.as_deref().unwrap_or_default();
+                let texture = values.materials.iter().find(|of| of.number == object.material);
+                let texture = texture.map_or("", |of| of.id.as_str());
+                let posed = of.posed.as_deref().unwrap_or_default();
                 write_body(object, material.pattern.as_ref(), texture, posed, &mut out)?;
             }
         }
@@ -74,7 +98,7 @@ impl<'a> Pov<'a> {
     /// # Errors
     /// As [`Pov::write_inc`].
     pub fn scene(&self) -> io::Result<String> {
-        self.fill("scene.pov")
+        self.fill("scene.pov", &self.values)
     }
 
     /// The text of `NAME.ini`.
@@ -82,7 +106,7 @@ impl<'a> Pov<'a> {
     /// # Errors
     /// As [`Pov::write_inc`].
     pub fn settings(&self) -> io::Result<String> {
-        self.fill("scene.ini")
+        self.fill("scene.ini", &self.values)
     }
 
     /// The picture of the sky, with its strength, that belongs beside the scene as `NAME-sky.exr`.
@@ -94,9 +118,9 @@ impl<'a> Pov<'a> {
         }
     }
 
-    fn fill(&self, name: &str) -> io::Result<String> {
+    fn fill(&self, name: &str, values: &PovValues) -> io::Result<String> {
         self.templates
-            .fill(name, &self.values)
+            .fill(name, values)
             .map_err(|error: TemplateError| io::Error::new(io::ErrorKind::InvalidData, error))
     }
 }

@@ -17,7 +17,7 @@ const MOST_COPIED: usize = 1_000_000;
 const DOME: u32 = 96;
 
 /// What the templates may ask for.
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 pub(super) struct PovValues {
     version: &'static str,
     pub stem: String,
@@ -31,6 +31,8 @@ pub(super) struct PovValues {
     inline: bool,
     extent: String,
     pub objects: Vec<ObjectValues>,
+    /// The stem of the file that has what stands about them, and what that is declared as.
+    stage: Option<[String; 2]>,
     pub materials: Vec<MaterialValues>,
     camera: CameraValues,
     lights: Vec<LightValues>,
@@ -46,12 +48,17 @@ pub(super) struct PovValues {
     ground: Option<GroundValues>,
 }
 
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 pub(super) struct ObjectValues {
+    /// Its number in the model.
+    #[serde(skip)]
+    pub number: usize,
     pub id: String,
     height: String,
     foot: String,
-    /// What follows the object where it stands, after the first, which is at its foot.
+    /// How it is scaled and turned where it stands first, at its foot.
+    turned: String,
+    /// What follows the object where it stands, after the first.
     places: Vec<String>,
     keyword: &'static str,
     shadow: bool,
@@ -63,8 +70,11 @@ pub(super) struct ObjectValues {
     body: String,
 }
 
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 pub(super) struct MaterialValues {
+    /// Its number in the model.
+    #[serde(skip)]
+    pub number: usize,
     pub id: String,
     colour: String,
     ambient: String,
@@ -78,7 +88,7 @@ pub(super) struct MaterialValues {
     pattern: Option<PatternValues>,
 }
 
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 struct PatternValues {
     function: String,
     colour: String,
@@ -87,7 +97,7 @@ struct PatternValues {
     mean: String,
 }
 
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 struct CameraValues {
     kind: &'static str,
     location: String,
@@ -96,7 +106,7 @@ struct CameraValues {
     width: Option<String>,
 }
 
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 struct LightValues {
     location: String,
     colour: String,
@@ -109,7 +119,7 @@ struct LightValues {
     shadow: bool,
 }
 
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 struct SkyValues {
     horizon: String,
     zenith: Option<String>,
@@ -117,7 +127,7 @@ struct SkyValues {
     turn: Option<String>,
 }
 
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 struct NaturalValues {
     /// Is it about leaves, which light goes through?
     leafy: bool,
@@ -131,7 +141,7 @@ struct NaturalValues {
     far: String,
 }
 
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 struct GroundValues {
     height: String,
     colour: String,
@@ -160,6 +170,7 @@ pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin)
     let extent = if bounds.is_empty() { 1.0 } else { bounds.size().max_element() };
     let digits = Digits::for_size(extent);
     let point = |p: DVec3| vector(to_pov(p), digits);
+    let own = || model.objects.iter().filter(|object| !object.is_scenery);
     let dome = Dome::new(model);
     let is_natural = model.look == Look::Natural;
     let lights = if is_natural { Vec::new() } else { dome.lights(DOME) };
@@ -172,14 +183,12 @@ pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin)
         width: size[0],
         height_pixels: size[1],
         height: number(bounds.max.z.max(0.0), digits),
-        inline: model.primitives() > MOST_COPIED && model.objects.iter().all(|o| o.instances.len() == 1),
+        inline: own().map(|object| object.body.primitives()).sum::<usize>() > MOST_COPIED
+            && own().all(|object| object.instances.len() == 1),
         extent: number(extent * 100.0, digits),
-        objects: object_values(model, &prefix),
-        materials: model
-            .materials
-            .iter()
-            .map(|(name, material)| material_values(material_id(&prefix, name), material))
-            .collect(),
+        objects: object_values(model, &prefix, false),
+        stage: model.has_scenery().then(|| [format!("{}-stage", plain(name)), format!("{prefix}_Stage")]),
+        materials: all_material_values(model, &prefix, false),
         camera: camera_values(&model.camera, digits),
         lights: model.lights.iter().map(|light| light_values(light, extent, &point)).collect(),
         look: if is_natural { "natural" } else { "studio" },
@@ -196,25 +205,52 @@ fn material_id(prefix: &str, name: &str) -> String {
     format!("{prefix}_{}_Texture", identifier(name))
 }
 
-fn object_values(model: &Model, prefix: &str) -> Vec<ObjectValues> {
+/// The values of what stands about the objects of `of`, a file of its own.
+pub(super) fn stage_values(model: &Model, of: &PovValues) -> Option<PovValues> {
+    let [stem, prefix] = of.stage.clone()?;
+    Some(PovValues {
+        objects: object_values(model, &prefix, true),
+        materials: all_material_values(model, &prefix, true),
+        height: "0".to_owned(),
+        stage: None,
+        stem,
+        prefix,
+        ..of.clone()
+    })
+}
+
+/// The materials that scenery has, or all others.
+fn all_material_values(model: &Model, prefix: &str, is_scenery: bool) -> Vec<MaterialValues> {
+    let is_of_scenery = |i: usize| model.objects.iter().any(|object| object.material == i && object.is_scenery);
+    let materials = model.materials.iter().enumerate().filter(|&(i, _)| is_of_scenery(i) == is_scenery);
+    materials.map(|(i, (name, material))| material_values(i, material_id(prefix, name), material)).collect()
+}
+
+/// The objects that are scenery, or all others.
+fn object_values(model: &Model, prefix: &str, is_scenery: bool) -> Vec<ObjectValues> {
+    let wanted: Vec<usize> = (0..model.objects.len()).filter(|&i| model.objects[i].is_scenery == is_scenery).collect();
     let mut ids: Vec<String> = Vec::new();
-    for object in &model.objects {
-        let is_alone = model.objects.len() == 1;
-        ids.push(if is_alone { prefix.to_owned() } else { part_identifier(prefix, &object.name, &ids) });
+    for &i in &wanted {
+        let is_alone = wanted.len() == 1;
+        ids.push(if is_alone { prefix.to_owned() } else { part_identifier(prefix, &model.objects[i].name, &ids) });
     }
-    let values = model.objects.iter().enumerate().map(|(i, object)| {
+    let values = wanted.iter().enumerate().map(|(nth, &i)| {
+        let object = &model.objects[i];
         let posed = first_posed(model, i);
+        let id_of = |i: usize| wanted.iter().position(|&j| j == i).map(|nth| &ids[nth]);
         let (name, material) = &model.materials[object.material];
         let texture = material_id(prefix, name);
         ObjectValues {
-            id: ids[i].clone(),
+            number: i,
+            id: ids[nth].clone(),
             height: number(object.body.height(), object.digits),
             foot: vector(to_pov(object.instances[0].at), object.digits),
+            turned: turned(&object.instances[0]),
             places: object.instances[1..].iter().map(|place| placed(place, object.digits)).collect(),
             keyword: keyword(&object.body),
             shadow: object.shadow,
             texture: if is_plain(object, material) { format!("{texture}_Plain") } else { texture },
-            posed: posed.map(|first| format!("{}_One", ids[first])),
+            posed: posed.and_then(id_of).map(|id| format!("{id}_One")),
             one: (posed == Some(i)).then(|| mesh_mark(i)),
             body: body_mark(i),
         }
@@ -233,8 +269,9 @@ fn first_posed(model: &Model, i: usize) -> Option<usize> {
     model.objects.iter().position(|object| matches!(&object.body, Body::Posed(mesh, _) if mesh == own))
 }
 
-fn material_values(id: String, m: &Material) -> MaterialValues {
+fn material_values(nth: usize, id: String, m: &Material) -> MaterialValues {
     MaterialValues {
+        number: nth,
         id,
         colour: colour(m.colour),
         ambient: number(m.ambient, PLAIN),
@@ -322,6 +359,11 @@ fn light_values(light: &Light, extent: f64, point: &dyn Fn(DVec3) -> String) -> 
 
 /// An object's further place, as what follows its name.
 fn placed(place: &Instance, digits: Digits) -> String {
+    format!("{}translate {}", turned(place), vector(to_pov(place.at), digits))
+}
+
+/// How an object is scaled and turned at a place, before it is moved.
+fn turned(place: &Instance) -> String {
     let mut text = String::new();
     if place.scale != 1.0 {
         text.push_str(&format!("scale {} ", number(place.scale, PLAIN)));
@@ -330,7 +372,7 @@ fn placed(place: &Instance, digits: Digits) -> String {
         // Left-handed: the other way around.
         text.push_str(&format!("rotate {}*y ", number(-place.turn, PLAIN)));
     }
-    format!("{text}translate {}", vector(to_pov(place.at), digits))
+    text
 }
 
 /// A union of fewer than two objects warns.

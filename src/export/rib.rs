@@ -7,10 +7,22 @@ use std::io::{self, Write};
 use super::rib_body::write_object;
 use super::rib_options::RibOptions;
 use super::rib_sheets::sheet_bytes_needed;
+use super::rib_stage::in_front;
 use super::rib_surface::is_leaf;
-use super::rib_values::{RibValues, has_casters, values};
+use super::rib_values::{RibValues, has_casters, near, values};
 use super::{Origin, TemplateError, Templates};
 use crate::model::{Body, Light, Limbs, Model, Object, Pattern};
+
+/// An archive of a scene's objects, where they stand in the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RibPart {
+    /// `NAME.archive.rib`: what the scene is of.
+    Archive,
+    /// `NAME.casters.rib`: what of it casts shadows.
+    Casters,
+    /// `NAME.stage.rib`: what stands about it.
+    Stage,
+}
 
 /// A model on its way to RIB.
 pub struct Rib<'a> {
@@ -93,36 +105,40 @@ impl<'a> Rib<'a> {
         has_casters(self.model, self.options)
     }
 
-    /// Writes `NAME.archive.rib`: every object, where it stands in the world.
+    /// Does anything stand about its objects, in an archive of its own, `NAME.stage.rib`?
+    #[must_use]
+    pub fn has_stage(&self) -> bool {
+        self.model.has_scenery()
+    }
+
+    /// Writes one of its archives.
     ///
     /// # Errors
     /// What `out` says.
-    pub fn write_archive(&self, out: impl Write) -> io::Result<()> {
-        self.write_objects(|_| true, out)
-    }
-
-    /// Writes `NAME.casters.rib`: the objects that cast shadows.
-    ///
-    /// # Errors
-    /// What `out` says.
-    pub fn write_casters(&self, out: impl Write) -> io::Result<()> {
-        self.write_objects(|object| object.shadow, out)
-    }
-
-    fn write_objects(&self, is_wanted: impl Fn(&Object) -> bool, mut out: impl Write) -> io::Result<()> {
+    pub fn write_part(&self, part: RibPart, mut out: impl Write) -> io::Result<()> {
         writeln!(out, "##RenderMan RIB-Structure 1.1 Entity\nversion 3.03")?;
+        let is_wanted = |object: &Object| match part {
+            RibPart::Archive => !object.is_scenery,
+            RibPart::Casters => !object.is_scenery && object.shadow,
+            RibPart::Stage => object.is_scenery,
+        };
         let is_thorns = |object: &Object| object.body.limbs().is_some_and(|limbs| limbs.is_thorns);
         let shown = |object: &&Object| is_wanted(object) && !(self.options.displace && is_thorns(object));
-        for (handle, object) in (1..).zip(self.model.objects.iter().filter(shown)) {
+        // A scene reads several archives: no number is used again.
+        for (handle, object) in (1..).zip(&self.model.objects).filter(|(_, object)| shown(object)) {
             let (_, material) = &self.model.materials[object.material];
-            write_object(&self.detailed(object), material, handle, self.options, &mut out)?;
+            let shown = self.detailed(object);
+            if !shown.instances.is_empty() {
+                write_object(&shown, material, handle, self.options, &mut out)?;
+            }
         }
         Ok(())
     }
 
-    /// `object`, without what the picture is too coarse to show.
+    /// `object`, without what the picture is too coarse to show or what is behind the camera.
     fn detailed<'o>(&self, object: &'o Object) -> Cow<'o, Object> {
         match &object.body {
+            _ if object.is_scenery => Cow::Owned(in_front(object, &self.model.camera, near(self.model))),
             Body::Limbs(limbs) if self.options.detail > 0.0 => {
                 let error = self.options.detail * object.pixel(&self.model.camera, self.width);
                 let (name, instances) = (object.name.clone(), object.instances.clone());

@@ -41,7 +41,7 @@ pub(super) fn write_object(
         )?;
     }
     let poses = object.body.poses();
-    if object.instances.len() == 1 && poses.is_empty() {
+    if object.instances == [Instance::at(object.instances[0].at)] && poses.is_empty() {
         write_primitives(object, material, object.instances[0].at, out)?;
         return writeln!(out, "AttributeEnd");
     }

@@ -41,6 +41,8 @@ pub(super) struct RibValues {
     linear: bool,
     /// What the maps show: the end of the name of an archive.
     casters: &'static str,
+    /// Is there an archive of what stands about?
+    stage: bool,
 }
 
 #[derive(Serialize)]
@@ -80,7 +82,7 @@ struct MapValues {
 /// The values of `model`, whose files are called `name`.
 pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin, options: RibOptions) -> RibValues {
     let bounds = model.bounds();
-    let extent = if bounds.is_empty() { 1.0 } else { bounds.size().max_element() };
+    let extent = extent(&bounds);
     let digits = Digits::for_size(extent);
     let sheets = sheets(model, size, digits);
     let stem = plain(name);
@@ -110,9 +112,23 @@ pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin,
         air: model.air.map(|air| [number(air.clear, digits), colour(model.sky.at_horizon())]),
         ray_bias: (options.shadows == RibShadows::Rays).then(|| number(extent * RAY_BIAS, digits)),
         linear: options.linear,
+        stage: model.has_scenery(),
         casters: if has_casters(model, options) { "casters" } else { "archive" },
         stem,
     }
+}
+
+/// Nothing nearer to the camera is seen, as a share of the extent.
+const NEAR: f64 = 1e-3;
+
+/// Nothing nearer to the camera of `model` is seen.
+pub(super) fn near(model: &Model) -> f64 {
+    extent(&model.bounds()) * NEAR
+}
+
+/// The size of what is within `bounds`.
+fn extent(bounds: &Bounds) -> f64 {
+    if bounds.is_empty() { 1.0 } else { bounds.size().max_element() }
 }
 
 fn camera_values(camera: &Camera, bounds: Bounds, extent: f64, sheets: &[Sheet], digits: Digits) -> CameraValues {
@@ -134,7 +150,7 @@ fn camera_values(camera: &Camera, bounds: Bounds, extent: f64, sheets: &[Sheet],
     CameraValues {
         fov,
         window,
-        clipping: format!("{} {}", number(extent * 1e-3, digits), number(far, digits)),
+        clipping: format!("{} {}", number(extent * NEAR, digits), number(far, digits)),
         matrix: to_camera(camera.at, frame, digits),
     }
 }
@@ -197,7 +213,7 @@ fn light_values(
 
 /// Do shadow maps need an archive of their own, since some objects cast no shadow?
 pub(super) fn has_casters(model: &Model, options: RibOptions) -> bool {
-    options.shadows == RibShadows::Maps && model.objects.iter().any(|object| !object.shadow)
+    options.shadows == RibShadows::Maps && model.objects.iter().any(|object| !object.shadow && !object.is_scenery)
 }
 
 /// A shadow map: the scene as a sun sees it.

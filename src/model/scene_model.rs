@@ -41,6 +41,12 @@ impl Model {
         own.map(Object::bounds).fold(Bounds::EMPTY, Bounds::union)
     }
 
+    /// Does anything stand about what it is of?
+    #[must_use]
+    pub fn has_scenery(&self) -> bool {
+        self.objects.iter().any(|object| object.is_scenery)
+    }
+
     /// A box around all objects.
     #[must_use]
     pub fn bounds_of_all(&self) -> Bounds {

@@ -21,7 +21,7 @@ impl World<'_> {
         let mut colour = pigment.map(|c| c * own);
         for light in &self.model.lights {
             let (towards, far, shadow) = towards(light, surface.point);
-            if !material.shows(surface.normal.dot(towards)) {
+            if !material.shows(surface.turned.dot(towards)) {
                 continue;
             }
             let to_light = Ray { origin: surface.point, direction: towards, near: SHADOW, far };
@@ -30,7 +30,7 @@ impl World<'_> {
             }
             let Colour(strength) = light.colour();
             let strength = strength.map(|x| x * light.falloff(far));
-            add(&mut colour, &lit(material, pigment, shadow.then_some(ray), surface.normal, towards), &strength);
+            add(&mut colour, &lit(material, pigment, shadow.then_some(ray), surface.turned, towards), &strength);
         }
         colour
     }

@@ -3,8 +3,8 @@
 use crate::bvh::{Boxes, Cones, Entry, Hit, Ray, RoundCone, Triangle, Triangles};
 use crate::geom::Bounds;
 use crate::math::{DMat3, DVec3};
-use crate::model::pattern::Expr;
-use crate::model::{Body, Dome, Instance, LimbFrame, Limbs, Mesh, Model, Object, Pose, limb_frames};
+use crate::model::pattern::{Expr, Figure};
+use crate::model::{Body, Dome, Instance, LimbFrame, Limbs, Mesh, Model, Object, Pattern, Pose, limb_frames};
 
 /// Rays from surfaces start this far off them, as a share of the world's size: more than single precision loses.
 const OFF: f64 = 2e-5;
@@ -19,8 +19,8 @@ pub struct World<'a> {
     /// Object and place of each box.
     instances: Vec<(u32, Standing)>,
     boxes: Boxes,
-    /// The share of the ground's pattern, and the unit of its coordinates.
-    ground: Option<(Expr, f64)>,
+    /// The ground's pattern.
+    ground: Option<Spread>,
     /// The first number of each object's branches among all.
     branches: Vec<u32>,
     /// How far rays from surfaces start off them.
@@ -30,7 +30,7 @@ pub struct World<'a> {
 /// An object in its own space.
 enum ObjectShape<'a> {
     Limbs(LimbShape<'a>),
-    Mesh(&'a Mesh, Triangles, Option<(Expr, f64)>),
+    Mesh(&'a Mesh, Triangles, Option<Spread>),
 }
 
 /// Round cones.
@@ -51,6 +51,23 @@ struct Laid {
     mean: f64,
     /// The axes of the limb at each ball.
     frames: Vec<LimbFrame>,
+}
+
+/// A pattern over what has no limbs.
+struct Spread {
+    share: Expr,
+    size: f64,
+}
+
+impl Spread {
+    fn new(figure: &dyn Figure) -> Self {
+        Self { share: figure.share(), size: figure.size() }
+    }
+
+    /// Its share at a place, which exporters have with y up.
+    fn at(&self, p: DVec3) -> f64 {
+        self.share.at(DVec3::new(p.x, p.z, p.y) / self.size)
+    }
 }
 
 /// Where an object, or one posed mesh of it, is in the world.
@@ -104,6 +121,8 @@ pub struct SurfaceHit {
     pub point: DVec3,
     /// Unit normal, towards where the ray came from.
     pub normal: DVec3,
+    /// As POV-Ray has it: the normal of a smooth mesh is turned to where the ray came from, though its triangle may face there.
+    pub turned: DVec3,
     /// The object, or `None` for the ground.
     pub object: Option<u32>,
     /// The limb, counted through all objects.
@@ -175,9 +194,8 @@ impl<'a> ObjectShape<'a> {
             }
             Body::Mesh(mesh) | Body::Posed(mesh, _) => {
                 let pattern = model.materials[object.material].1.pattern;
-                let pattern = pattern.filter(|pattern| !pattern.figure().follows_limbs());
-                let pattern = pattern.map(|pattern| (pattern.figure().share(), pattern.figure().size()));
-                Self::Mesh(mesh, Triangles::new(mesh.triangles.len(), |i| triangle(mesh, i)), pattern)
+                let figure = pattern.as_ref().map(Pattern::figure).filter(|figure| !figure.follows_limbs());
+                Self::Mesh(mesh, Triangles::new(mesh.triangles.len(), |i| triangle(mesh, i)), figure.map(Spread::new))
             }
         }
     }
@@ -204,17 +222,17 @@ impl<'a> ObjectShape<'a> {
     }
 }
 
+/// A normal on the side from which `way` comes.
+fn against(way: DVec3, normal: DVec3) -> DVec3 {
+    if normal.dot(way) > 0.0 { -normal } else { normal }
+}
+
 /// The normal of a smooth mesh on the side from which `way` comes to its triangle, whose own normal is `flat`; where it looks the
 /// other way, as it may behind a crest, the nearest one that does not.
 fn towards(way: DVec3, flat: DVec3, normal: DVec3) -> DVec3 {
     let normal = if flat.dot(way) > 0.0 { -normal } else { normal };
     let away = normal.dot(way);
     if away > 0.0 { (normal - way * away).normalize_or(normal) } else { normal }
-}
-
-/// The share of a pattern at a place, which exporters have with y up.
-fn patterned(share: &Expr, size: f64, p: DVec3) -> f64 {
-    share.at(DVec3::new(p.x, p.z, p.y) / size)
 }
 
 fn triangle(mesh: &Mesh, i: usize) -> Triangle {
@@ -277,7 +295,7 @@ impl<'a> World<'a> {
         let size = model.bounds();
         let reach = if size.is_empty() { 1.0 } else { size.min.abs().max(size.max.abs()).max_element() };
         let pattern = model.ground.as_ref().and_then(|ground| ground.material.pattern);
-        let ground = pattern.map(|pattern| (pattern.figure().share(), pattern.figure().size()));
+        let ground = pattern.map(|pattern| Spread::new(pattern.figure()));
         let (dome, boxes) = (Dome::new(model), Boxes::new(&boxes));
         Self { model, dome, shapes, boxes, instances, ground, branches, off: reach * OFF }
     }
@@ -381,16 +399,17 @@ impl<'a> World<'a> {
         let point = ray.at(t);
         let is_met = t > ray.near && t < ray.far;
         let is_on = ground.radius.is_none_or(|r| point.x * point.x + point.y * point.y <= r * r);
-        let normal = if ray.direction.z < 0.0 { DVec3::Z } else { DVec3::NEG_Z };
+        let normal = against(ray.direction, DVec3::Z);
         (is_met && is_on).then_some(SurfaceHit {
             t,
             point,
             normal,
+            turned: normal,
             object: None,
             branch: 0,
             cost: 0.0,
             level: 0,
-            pattern: self.ground.as_ref().map_or(0.0, |(share, size)| patterned(share, *size, point)),
+            pattern: self.ground.as_ref().map_or(0.0, |pattern| pattern.at(point)),
             is_inside: false,
         })
     }
@@ -414,11 +433,12 @@ impl<'a> World<'a> {
         let [a, b] = balls.map(|i| &shape.limbs.balls[i as usize]);
         let at = if share > 0.0 { 1 } else { 0 };
         let pattern = shape.share(balls[at], own.at(t / scale));
-        let normal = place.normal(normal);
+        let normal = against(ray.direction, place.normal(normal));
         SurfaceHit {
             t,
             point: ray.at(t),
-            normal: if normal.dot(ray.direction) > 0.0 { -normal } else { normal },
+            normal,
+            turned: normal,
             object: Some(*index),
             branch: self.branches[*index as usize] + [a, b][at].branch,
             cost: a.cost + (b.cost - a.cost) * share,
@@ -434,7 +454,7 @@ impl<'a> World<'a> {
         instance: u32,
         t: f64,
         id: u32,
-        (mesh, pattern): (&Mesh, Option<&(Expr, f64)>),
+        (mesh, pattern): (&Mesh, Option<&Spread>),
     ) -> SurfaceHit {
         let (index, place) = &self.instances[instance as usize];
         let object = &self.model.objects[*index as usize];
@@ -458,13 +478,14 @@ impl<'a> World<'a> {
             t,
             point: ray.at(t),
             normal: towards(ray.direction, flat, normal),
+            turned: against(ray.direction, normal),
             object: Some(*index),
             branch: self.branches[*index as usize],
             cost: 0.0,
             level: 0,
             // It has no limbs that a pattern could follow.
             pattern: match pattern {
-                Some((share, size)) => patterned(share, *size, own.at(t / scale)),
+                Some(pattern) => pattern.at(own.at(t / scale)),
                 None => self.model.materials[object.material].1.pattern.map_or(0.0, |p| p.figure().mean()),
             },
             is_inside: false,

@@ -1,6 +1,8 @@
 //! What exported files are, as numbers; tests/digests.txt keeps them.
 
-use lichtenberg::export::{Origin, Pov, Rib, RibOptions, SvgOptions, Templates, write_obj, write_ply, write_svg};
+use lichtenberg::export::{
+    Origin, Pov, Rib, RibOptions, RibPart, SvgOptions, Templates, write_obj, write_ply, write_svg,
+};
 use lichtenberg::model::Model;
 use lichtenberg::scene::Loaded;
 
@@ -9,13 +11,15 @@ fn fnv(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
 }
 
-/// A line for the include file and the schematic. If `is_whole`, also one for the RIB archive, and, of scenes that are all mesh,
+/// A line for the include files and the schematic. If `is_whole`, also one for the RIB archive, and, of scenes that are all mesh,
 /// one for OBJ and one for PLY.
 pub fn digests(name: &str, scene: &Loaded, model: &Model, is_whole: bool) -> String {
     let templates = Templates::default();
     let origin = Origin { command: "test".to_owned(), seed: scene.recipe.seed };
     let mut bytes = Vec::new();
-    Pov::new(model, &templates, "digest", [320, 240], &origin).write_inc(&mut bytes).unwrap();
+    let pov = Pov::new(model, &templates, "digest", [320, 240], &origin);
+    pov.write_inc(&mut bytes).unwrap();
+    pov.write_stage(&mut bytes).unwrap();
     write_svg(model, SvgOptions { size: [320, 240] }, &mut bytes).unwrap();
     let mut lines = format!("{:016x} {name}\n", fnv(&bytes));
     if !is_whole {
@@ -23,7 +27,7 @@ pub fn digests(name: &str, scene: &Loaded, model: &Model, is_whole: bool) -> Str
     }
     bytes.clear();
     let rib = Rib::new(model, &templates, "digest", [320, 240], &origin, RibOptions::default());
-    rib.write_archive(&mut bytes).unwrap();
+    rib.write_part(RibPart::Archive, &mut bytes).unwrap();
     lines += &format!("{:016x} {name} rib\n", fnv(&bytes));
     for ending in ["obj", "ply"] {
         bytes.clear();

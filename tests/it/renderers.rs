@@ -25,7 +25,7 @@ fn are_there() -> bool {
     found
 }
 
-/// The scene without sky, ground and light: its alpha is the silhouette of what has grown.
+/// The scene without sky, ground, light and what stands about: its alpha is the silhouette of what has grown.
 fn silhouette_template() -> String {
     let changed = |text: String, from: &str, to: &str| {
         assert_eq!(text.matches(from).count(), 1, "{from}");
@@ -35,6 +35,7 @@ fn silhouette_template() -> String {
     // Fine enough that its own grain is none of it.
     let text = changed(text, "PixelSamples 8 8", "PixelSamples 16 16");
     let text = changed(text, "\"file\" \"rgb\"", "\"file\" \"rgba\"");
+    let text = changed(text, "{% if stage %}", "{% if false %}");
     ["sheet in sheets", "light in lights", "map in maps"].into_iter().fold(text, |text, all| {
         let (one, _) = all.split_once(' ').unwrap();
         changed(text, &format!("{{% for {all} %}}"), &format!("{{% for {one} in [] %}}"))
@@ -75,12 +76,13 @@ fn overlap(a: &[f64], b: &[f64]) -> f64 {
 
 /// The coverage of pixels by what has grown, as the exact look has it.
 fn silhouette(name: &str) -> Vec<f64> {
-    let changes: Vec<&str> = small_variant(name).into_iter().skip(1).collect();
+    let changes = small_variant(name);
     let changes: Vec<(&str, &str)> = changes.iter().filter_map(|change| change.split_once('=')).collect();
     let (scene, size) = (embedded(name, &changes), silhouette_size(name));
     let grown = grow(&scene, &[], &Memory::default(), &Progress::default()).unwrap();
     let mut model = model(&scene, &grown, size, &Memory::default(), &Progress::default()).unwrap();
     model.ground = None;
+    model.objects.retain(|object| !object.is_scenery);
     model.lights.clear();
     let settings = RenderSettings { transparent: true, ..RenderSettings::new(size, Look::Exact, 64) };
     let film = render(&World::new(&model), &settings, &Progress::default()).unwrap();

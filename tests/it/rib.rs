@@ -2,7 +2,7 @@
 
 use crate::support::rib::{Primitive, World, point, read};
 use crate::support::{embedded, run_in, succeed_in, text};
-use lichtenberg::export::{Origin, Rib, RibOptions, RibShadows, Templates};
+use lichtenberg::export::{Origin, Rib, RibOptions, RibPart, RibShadows, Templates};
 use lichtenberg::math::{DVec3, Memory, Progress};
 use lichtenberg::model::{Camera, Model, Object, Projection};
 use lichtenberg::scene::{grow, model};
@@ -17,8 +17,13 @@ fn exported(model: &Model, options: RibOptions) -> (String, String) {
     let templates = Templates::default();
     let rib = Rib::new(model, &templates, "scene", [160, 120], &Origin::default(), options);
     let mut archive = Vec::new();
-    rib.write_archive(&mut archive).unwrap();
-    (rib.scene().unwrap(), String::from_utf8(archive).unwrap())
+    rib.write_part(RibPart::Archive, &mut archive).unwrap();
+    if rib.has_stage() {
+        rib.write_part(RibPart::Stage, &mut archive).unwrap();
+    }
+    // The reader takes all archives as one.
+    let scene = rib.scene().unwrap().replace("ReadArchive \"scene.stage.rib\"\n", "");
+    (scene, String::from_utf8(archive).unwrap())
 }
 
 fn near(found: [f64; 3], expected: DVec3, size: f64) -> bool {
@@ -221,7 +226,7 @@ fn shadow_maps_show_casters_alone() {
     assert!(rib.has_casters() && scene.contains("\"scene.casters.rib\""));
     assert_eq!(scene.matches("\"scene.archive.rib\"").count(), 1);
     let mut casters = Vec::new();
-    rib.write_casters(&mut casters).unwrap();
+    rib.write_part(RibPart::Casters, &mut casters).unwrap();
     let world = read(&scene, &text(&casters));
     assert!(world.objects.iter().all(|(name, ..)| *name != model.objects[0].name));
     assert!(world.objects.iter().any(|(name, ..)| *name == model.objects[1].name));
@@ -236,7 +241,7 @@ fn the_command_writes_scene_and_archive() {
         let args = [&["export", "elm", "--to", "rib"], &few[..], extra].concat();
         succeed_in(folder.path(), &args)
     };
-    assert_eq!(export(&[]), "./elm.archive.rib\n./bark.sl\n./elm.rib\n");
+    assert_eq!(export(&[]), "./elm.archive.rib\n./elm.stage.rib\n./bark.sl\n./leaf.sl\n./elm.rib\n");
     let plain = std::fs::read(folder.path().join("elm.archive.rib")).unwrap();
     let scene = std::fs::read_to_string(folder.path().join("elm.rib")).unwrap();
     read(&scene, &text(&plain));
@@ -247,7 +252,7 @@ fn the_command_writes_scene_and_archive() {
     std::io::Read::read_to_end(&mut flate2::read::GzDecoder::new(&packed[..]), &mut unpacked).unwrap();
     assert_eq!(unpacked, plain);
     std::fs::write(folder.path().join("elm.rib"), scene.replace("ShadingRate 0.5", "ShadingRate 1")).unwrap();
-    assert_eq!(export(&[]), "./elm.archive.rib\n./bark.sl\n");
+    assert_eq!(export(&[]), "./elm.archive.rib\n./elm.stage.rib\n./bark.sl\n./leaf.sl\n");
     let output = run_in(folder.path(), &["export", "elm", "--to", "pov", "--gzip"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stderr).contains("--gzip is for RIB"));
@@ -303,7 +308,9 @@ fn detail_is_below_the_pixel() {
         let cones: Vec<_> = world.objects.iter().flat_map(|object| &object.3).filter_map(cone).collect();
         // Pixels of a unit at unit depth: the angle is across the shorter side.
         let pixels = 0.5 * world.format[1] / libm::tan(world.fov.to_radians() * 0.5);
-        for ball in model.objects.iter().flat_map(|object| &object.body.limbs().unwrap().balls).step_by(96) {
+        for ball in
+            model.objects.iter().filter_map(|object| object.body.limbs()).flat_map(|limbs| &limbs.balls).step_by(96)
+        {
             let depth = point(&world.camera, ball.centre.to_array())[2];
             let strays = cones.iter().map(|&(a, ra, b, rb)| {
                 let along = ((ball.centre - a).dot(b - a) / (b - a).length_squared().max(1e-12)).clamp(0.0, 1.0);

@@ -76,18 +76,20 @@ pub fn embedded(name: &str, overrides: &[(&str, &str)]) -> Loaded {
 }
 
 /// What makes a small variant of a heavy scene, as arguments: povray parses thousands of strands a second, and lights them by
-/// the hundred.
+/// the hundred. Grass and far plants take other renderers longer than the scene itself, and are nothing but silhouettes: one of a
+/// thousand samples differs.
 pub fn small_variant(name: &str) -> Vec<&'static str> {
-    let change = match name {
-        "papers/2007-fig15" | "moss" => "grow.moss.to.tips.count=5000",
-        "papers/2007-fig16" | "papers/2007-fig10" => "space.block.nodes.lattice.spacing=2",
-        "cracked-ground" => "space.mud.nodes.lattice.spacing=0.28",
-        "fur" => "object.fur.tile.count=[2, 1]",
-        // Grass takes other renderers longer than trees, and is nothing but silhouettes: one of a thousand samples differs.
-        "oak-summer" | "birch" | "willow" | "bush" | "windswept" | "dead-tree" => "ground.grass.reach=1",
-        _ => return Vec::new(),
+    let own = match name {
+        "papers/2007-fig15" | "moss" => Some("grow.moss.to.tips.count=5000"),
+        "papers/2007-fig16" | "papers/2007-fig10" => Some("space.block.nodes.lattice.spacing=2"),
+        "cracked-ground" => Some("space.mud.nodes.lattice.spacing=0.28"),
+        "fur" => Some("object.fur.tile.count=[2, 1]"),
+        _ => None,
     };
-    vec!["--set", change]
+    let recipe = embedded(name, &[]).recipe;
+    let grass = recipe.ground.and_then(|ground| ground.grass).map(|_| "ground.grass.reach=1");
+    let far = recipe.background.map(|_| "background.share=0");
+    own.into_iter().chain(grass).chain(far).flat_map(|change| ["--set", change]).collect()
 }
 
 /// The real povray; without it the tests fail with a hint, they are not skipped.
