@@ -33,11 +33,16 @@ pub struct Scene {
     #[serde(default)]
     #[schemars(length(min = 1))]
     pub include: Option<String>,
-    /// Where it stands: `meadow`, `heath`, `snow`, `studio`. The scene takes sky, ground, camera, look and what else the stage has that it does not give
-    /// itself, as by `include`; of a sky of the same kind, key by key.
+    /// Where it stands: `meadow`, `heath`, `desert`, `snow`, `night`, `sea-floor`, whose lengths are in metres, or `studio`. The scene
+    /// takes sky, ground, camera, look and what else the stage has that it does not give itself, as by `include`; of a sky of the
+    /// same kind, key by key.
     #[serde(default)]
     #[schemars(length(min = 1))]
     pub stage: Option<String>,
+    /// How many scene units are a metre of its stage.
+    #[serde(default = "one")]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
+    pub metre: f64,
     /// What it is called.
     #[schemars(length(min = 1))]
     pub title: String,
@@ -211,6 +216,10 @@ fn yes() -> bool {
 
 fn first_edition() -> u32 {
     1
+}
+
+fn one() -> f64 {
+    1.0
 }
 
 fn first_seed() -> u64 {

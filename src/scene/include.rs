@@ -1,11 +1,11 @@
-//! `include` and `stage`: what a scene takes from another file.
+//! `include`: what a scene takes from another file.
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::mistake::{Included, Mistake, Span};
 use super::tree::{Entry, Value, merge, parse};
-use crate::files::{Folder, ReadError, embedded_stage, stage_names};
+use crate::files::{Folder, ReadError};
 
 /// Files that include each other, one the next, at most.
 const MOST_DEPTH: usize = 16;
@@ -18,9 +18,6 @@ const BY_KEY: [&str; 5] = ["space", "grow", "object", "material", "claim"];
 const WHOLE: [&str; 3] = ["shape", "light", "animation"];
 /// Tables that are taken over key by key.
 const PLAIN: [&str; 5] = ["air", "background", "camera", "ground", "view"];
-
-/// Where a scene stands and how it is lit.
-const PLACE: [&str; 6] = ["air", "background", "ground", "light", "look", "sky"];
 
 /// Fills `root` with what the files that it includes give and it does not.
 pub(super) fn include(root: &mut Entry, folder: &Folder, mistakes: &mut Vec<Mistake>) {
@@ -58,29 +55,8 @@ pub(super) fn include(root: &mut Entry, folder: &Folder, mistakes: &mut Vec<Mist
     }
 }
 
-/// Removes what another stage gives, where one is asked for from outside.
-pub(super) fn clear_stage(root: &mut Entry) {
-    PLACE.iter().for_each(|key| drop(take(root, key)));
-}
-
-/// Fills `root` with what its stage gives and it does not.
-pub(super) fn set_stage(root: &mut Entry, mistakes: &mut Vec<Mistake>) {
-    let Some(entry) = take(root, "stage") else { return };
-    let wrong = |message: String| Mistake { span: entry.span.clone(), place: "stage".to_owned(), message };
-    let Value::String(name) = &entry.value else {
-        return mistakes.push(wrong(format!("expected the name of a stage, found {}", entry.value.kind())));
-    };
-    let Some(text) = embedded_stage(name) else {
-        let names = stage_names();
-        return mistakes.push(wrong(format!("there is no stage `{name}`; there are {}", names.join(", "))));
-    };
-    let file = Arc::new(Included { name: format!("stages/{name}.toml"), text: text.to_owned() });
-    let (stage, found) = parse(&file.text, Some(&file));
-    mistakes.extend(found);
-    take_over(root, &stage);
-}
-
-fn take(root: &mut Entry, key: &str) -> Option<Entry> {
+/// Removes what a key has.
+pub(super) fn take(root: &mut Entry, key: &str) -> Option<Entry> {
     let Value::Table(table) = &mut root.value else { return None };
     table.remove(key)
 }
@@ -109,7 +85,7 @@ fn read(folder: &Folder, name: &str) -> Result<String, IncludeError> {
 }
 
 /// Adds to a scene what only its base gives.
-fn take_over(scene: &mut Entry, base: &Entry) {
+pub(super) fn take_over(scene: &mut Entry, base: &Entry) {
     let (Value::Table(scene), Value::Table(base)) = (&mut scene.value, &base.value) else { return };
     for (key, value) in base {
         let Some(own) = scene.get_mut(key) else {
@@ -180,38 +156,6 @@ mod tests {
         let (folder, source) = folder(scene, files);
         let said = load(&source, &[]).unwrap_err().to_string();
         said.replace(&format!("{}/", folder.path().display()), "")
-    }
-
-    #[test]
-    fn a_stage_is_taken_and_changed() {
-        let with = |own: &str, given: &[(&str, &str)]| {
-            let text = format!(
-                "title = \"Mine\"\n{own}\n[space.air]\nshape.box = {{ min = [-1, -1, 0], max = [1, 1, 2] }}\n\
-                 nodes.lattice = {{ spacing = 0.5, neighbours = 6 }}\n[grow.twig]\nspace = \"air\"\nfrom.at = [[0, 0, 0]]\n\
-                 to.tips = {{ count = 2 }}\nwidth.constant = 0.02\n[object.twig]\ngrow = [\"twig\"]\n"
-            );
-            let (_folder, source) = folder(&text, &[]);
-            let changes: Vec<Override> = given
-                .iter()
-                .map(|(path, value)| Override { path: (*path).to_owned(), value: (*value).to_owned() })
-                .collect();
-            load(&source, &changes).map(|scene| scene.recipe).map_err(|error| error.to_string())
-        };
-        let meadow = with("stage = \"meadow\"", &[]).unwrap();
-        let own = with("stage = \"meadow\"\n[sky]\ndaylight = { hour = 9 }\n[ground]\nheight = 1", &[]).unwrap();
-        assert_eq!(meadow.look, crate::model::Look::Natural);
-        let [its, mine] = [&meadow, &own].map(|recipe| recipe.ground.as_ref().unwrap());
-        assert!(its.grass.is_some() && meadow.air.is_some());
-        assert_eq!((mine.height, mine.grass), (1.0, its.grass));
-        assert_ne!(own.sky, meadow.sky);
-        // Another kind of sky takes nothing from the stage's.
-        let plain = with("stage = \"meadow\"\n[sky]\ncolour = \"#ffffff\"", &[]).unwrap();
-        assert_eq!(plain.sky, crate::model::Sky::plain(crate::math::Colour([1.0; 3])));
-        // From outside it replaces what the scene has, and is changed by what follows.
-        let changed = with("[sky]\ncolour = \"#ffffff\"", &[("sky.daylight.hour", "9"), ("stage", "meadow")]).unwrap();
-        assert_eq!(changed.sky, own.sky);
-        let error = with("stage = \"moon\"", &[]).unwrap_err();
-        assert!(error.contains("there is no stage `moon`; there are heath, meadow, snow, studio"), "{error}");
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::mistake::SceneError;
 use super::schema::schema;
 use super::source::Source;
 use super::tree::Override;
-use super::{animation, document, include, resolve, tree, validate};
+use super::{animation, document, include, resolve, set_stage, tree, validate};
 
 /// Reads a scene: parses it, applies `overrides`, and resolves names and files.
 ///
@@ -50,12 +50,13 @@ pub fn load_frame(source: &Source, given: &[Override], frame: Option<f64>) -> Re
     let (mut tree, mut mistakes) = tree::parse(&source.text, None);
     include::include(&mut tree, &source.folder, &mut mistakes);
     // A stage is set first, and changed then.
-    let (stage, overrides): (Vec<_>, Vec<_>) = given.iter().cloned().partition(|change| change.path == "stage");
-    if !stage.is_empty() {
-        include::clear_stage(&mut tree);
-        tree::apply(&mut tree, &stage, &mut mistakes);
+    let is_first = |change: &Override| change.path == "stage" || change.path == "metre";
+    let (first, overrides): (Vec<_>, Vec<_>) = given.iter().cloned().partition(is_first);
+    if first.iter().any(|change| change.path == "stage") {
+        set_stage::clear_stage(&mut tree);
     }
-    include::set_stage(&mut tree, &mut mistakes);
+    tree::apply(&mut tree, &first, &mut mistakes);
+    set_stage::set_stage(&mut tree, &mut mistakes);
     tree::apply(&mut tree, &overrides, &mut mistakes);
     if let Some(frame) = frame {
         animation::animate(&mut tree, frame, &mut mistakes);

@@ -15,6 +15,7 @@ mod objects;
 mod resolve;
 mod resolver;
 mod schema;
+mod set_stage;
 mod source;
 mod tree;
 mod validate;
