@@ -36,7 +36,8 @@ pub(super) fn denoise(width: u32, pixels: &[[f32; 4]], guides: &[Guide]) -> Vec<
     let means: Vec<[f32; 2]> = (0..pixels.len()).into_par_iter().map(|i| film.mean(i, &lights)).collect();
     let filtered = |i: usize| {
         let own = &guides[i];
-        if own.is_sky() || own.variance == 0.0 {
+        // One whose samples are alike by chance, as where hardly any meets a light, is as noisy as those about it.
+        if own.is_sky() || means[i][1] == 0.0 {
             return pixels[i];
         }
         let mut sum = [0.0; 3];
@@ -174,6 +175,17 @@ mod tests {
         for (i, own) in filtered.iter().enumerate() {
             assert!((own[0] - clean[i][0]).abs() < 0.09, "{i}: {} {}", own[0], clean[i][0]);
         }
+    }
+
+    /// Where light is seldom met, all samples of a pixel may miss it.
+    #[test]
+    fn black_by_chance_is_noise() {
+        let (clean, mut noisy, mut guides) = walls();
+        let at = 10 * 32 + 6;
+        noisy[at] = [0.0, 0.0, 0.0, 1.0];
+        guides[at].variance = 0.0;
+        let filtered = denoise(32, &noisy, &guides);
+        assert!((filtered[at][0] - clean[at][0]).abs() < 0.09, "{}", filtered[at][0]);
     }
 
     #[test]
