@@ -10,13 +10,15 @@ use crate::skin::{terrain, terrain_bytes};
 
 /// The ground has faded into the horizon at this many times the camera's distance or the scene's size.
 const REACH: f64 = 2.5;
+/// A relief reaches no farther, in scene units: renderers show nothing beyond ten times this.
+const FARTHEST: f64 = 1e6;
 
 /// Lays the ground of `recipe` in `model`, whose camera is set, and what stands on it.
 pub(super) fn lay(recipe: &Recipe, model: &mut Model, memory: &Memory) -> Result<(), AssembleError> {
     let heights = recipe.ground.as_ref().map(|spec| Heights::new(spec, &model.objects));
     let ground = recipe.ground.as_ref().zip(heights.as_ref());
     if let Some((spec, heights)) = ground {
-        if recipe.camera.eye.is_some() {
+        if recipe.camera.eye.is_some() && recipe.camera.at.is_none() {
             let at = model.camera.at;
             model.camera.at.z += heights.at(at.x, at.y) - spec.height;
         }
@@ -39,11 +41,11 @@ fn lay_ground(spec: &GroundSpec, heights: &Heights, model: &mut Model, memory: &
     if heights.is_level() {
         return Ok(());
     }
-    let radius = spec.radius.unwrap_or(reach);
+    let radius = spec.radius.unwrap_or(reach).min(FARTHEST);
     memory.ask(terrain_bytes(radius, heights.least()))?;
     let mesh = terrain(radius, heights.least(), |x, y| heights.at(x, y));
-    model.materials.push(("ground".to_owned(), material));
-    let object = Object::of_mesh("ground", &mesh, DVec3::ZERO, model.materials.len() - 1)
+    model.materials.push(("terrain".to_owned(), material));
+    let object = Object::of_mesh("terrain", &mesh, DVec3::ZERO, model.materials.len() - 1)
         .map_err(|error| AssembleError::body("ground", error))?;
     // Level ground casts no shadow either, and low suns would show the triangles.
     model.objects.push(Object { shadow: false, is_scenery: true, ..object });

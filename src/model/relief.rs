@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::pattern::{Expr, patches};
+use super::pattern::{Expr, swells};
 use crate::math::DVec3;
 
 /// Rises of the ground, from drifts and tussocks to hills: one layer of its relief.
@@ -29,14 +29,14 @@ pub struct Relief {
     share: Expr,
 }
 
-/// Patches vary over so many lengths of their pattern's unit.
+/// Swells are so many units wide.
 const UNIT: f64 = 1.5;
 
 impl Relief {
     /// The layer that `spec` describes.
     #[must_use]
     pub fn new(spec: ReliefSpec) -> Self {
-        Self { spec, share: patches() }
+        Self { spec, share: swells() }
     }
 
     /// Its height above the ground at a place, from 0 to the one given.

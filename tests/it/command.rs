@@ -322,7 +322,7 @@ fn the_rest_of_the_command() {
     }
     assert!(info["seconds"]["grow"].as_f64().unwrap() > 0.0 && info["bytes"]["needed"].as_u64().unwrap() > 1_000_000);
     let exported = succeed_in(at, &["export", "cactus", "--to", "pov", "--json", "-o", "x"]);
-    assert_eq!(exported.lines().count(), 3);
+    assert_eq!(exported.lines().count(), 5);
     assert!(exported.lines().all(|l| serde_json::from_str::<serde_json::Value>(l).is_ok()));
     let output = run_in(at, &["check", "papers/2008-fig02", "--claims", "--set", "space.straight.weights.alpha=3"]);
     assert_eq!(output.status.code(), Some(1));

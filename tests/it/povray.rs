@@ -55,7 +55,7 @@ fn every_scene_renders_without_a_warning() {
 #[test]
 fn every_stage_renders_without_a_warning() {
     require_povray();
-    assert_eq!(stage_names().len(), 4);
+    assert_eq!(stage_names().len(), 7);
     stage_names().par_iter().for_each(|stage| {
         let folder = tempfile::tempdir().unwrap();
         let change = format!("stage={stage}");
@@ -139,6 +139,8 @@ fn the_shape_is_not_mirrored() {
         "camera.room=0",
         "--size",
         "160x120",
+        "--set",
+        "stage=studio",
         "-o",
         "out.png",
     ];

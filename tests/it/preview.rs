@@ -97,7 +97,7 @@ fn carried_over(look: &str, names: &[&str], most: f64) {
     require_povray();
     let folder = tempfile::tempdir().unwrap();
     for name in names {
-        let common = ["render", name, "--size", "120x90", "--look", look];
+        let common = [&["render", name, "--size", "120x90", "--look", look], &small_variant(name)[..]].concat();
         succeed_in(folder.path(), &[&common[..], &["--samples", "32", "-o", "ours.png"]].concat());
         succeed_in(folder.path(), &[&common[..], &["--samples", "9", "--with", "povray", "-o", "theirs.png"]].concat());
         let [ours, theirs] = ["ours.png", "theirs.png"]
@@ -146,7 +146,7 @@ fn depth_alpha_and_texts_are_written() {
     let layers = decode_linear(Cursor::new(&a)).unwrap();
     let scene: serde_json::Value = serde_json::from_str(layers.text("Scene").unwrap()).unwrap();
     assert_eq!(scene["title"], "Saguaro");
-    assert!(layers.text("View").unwrap().contains("\"look\":\"studio\""));
+    assert!(layers.text("View").unwrap().contains("\"look\":\"natural\""));
     assert!(layers.text("Software").unwrap().starts_with("lichtenberg "));
     // The same picture again is the same file.
     succeed_in(at, &[&common[..], &["--threads", "1", "-o", "c.png"]].concat());

@@ -90,7 +90,7 @@ fn signals_end_every_verb() {
         let is_killed = signal == "KILL" && status.signal() == Some(number);
         assert!(is_done || is_killed || status.code() == Some(128 + number), "{what}");
         ended[which] += usize::from(!is_done);
-        let whole = ["out.pov", "out.ini"].map(|name| usize::from(at(name).exists()));
+        let whole = ["out.pov", "out.ini", "out-stage.inc", "out-sky.exr"].map(|name| usize::from(at(name).exists()));
         let left = names(folder.path());
         assert_eq!(left.len(), count + whole.iter().sum::<usize>(), "{what}: {left:?}");
         if !is_done {

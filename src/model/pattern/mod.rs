@@ -14,7 +14,7 @@ pub use expr::Expr;
 pub use figure::Figure;
 pub use lenticels::Lenticels;
 pub use moss::Moss;
-pub use mottle::{Mottle, patches};
+pub use mottle::{Mottle, patches, swells};
 
 use schemars::JsonSchema;
 use serde::Deserialize;

@@ -65,6 +65,12 @@ impl Figure for Mottle {
     }
 }
 
+/// As [`patches`], without the smallest: what a mesh is fine enough for.
+#[must_use]
+pub fn swells() -> Expr {
+    (waves(&LARGE) * 0.2 + waves(&SMALL) * 0.1 + 0.5).share()
+}
+
 /// Patches of several sizes, the larger ones about one and a half units wide: from 0 to 1, half of it on the mean.
 #[must_use]
 pub fn patches() -> Expr {
