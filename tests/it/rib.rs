@@ -4,7 +4,7 @@ use crate::support::rib::{Primitive, World, point, read};
 use crate::support::{embedded, run_in, succeed_in, text};
 use lichtenberg::export::{Origin, Rib, RibOptions, RibPart, RibShadows, Templates};
 use lichtenberg::math::{DVec3, Memory, Progress};
-use lichtenberg::model::{Camera, Model, Object, Projection};
+use lichtenberg::model::{Body, Camera, Model, Object, Projection};
 use lichtenberg::scene::{grow, model};
 
 fn modelled(name: &str) -> Model {
@@ -165,7 +165,7 @@ pub fn reads_back(model: &Model, name: &str) {
     let objects: Vec<_> = world.objects.iter().filter(|(found, ..)| !SHEETS.contains(&found.as_str())).collect();
     assert_eq!(objects.len(), model.objects.len(), "{name}");
     for (object, (.., surface, colour, primitives)) in model.objects.iter().zip(objects) {
-        check_object(object, primitives, name);
+        check_object(&before_camera(object, &scene, &world), primitives, name);
         let (_, material) = &model.materials[object.material];
         let laid = material.pattern.filter(|_| object.body.limbs().is_some());
         let expected = if let Some(pattern) = laid {
@@ -197,6 +197,24 @@ pub fn reads_back(model: &Model, name: &str) {
             assert!((ray.normalize() - *towards).length() < 1e-4 && ray.length() > model.bounds().size().length());
         }
     }
+}
+
+/// An object without what of scenery reaches behind what the camera sees.
+fn before_camera(object: &Object, scene: &str, world: &World) -> Object {
+    let mut object = object.clone();
+    if !object.is_scenery {
+        return object;
+    }
+    let near: f64 = scene.rsplit("Clipping ").next().unwrap().split(' ').next().unwrap().parse().unwrap();
+    let is_seen = |p: DVec3, radius: f64| point(&world.camera, p.to_array())[2] - radius > near;
+    let Body::Mesh(mesh) = &mut object.body else { panic!("scenery is a mesh") };
+    if let [place] = object.instances[..] {
+        mesh.triangles.retain(|t| t.iter().all(|&i| is_seen(place.to_world(mesh.points[i as usize]), 0.0)));
+    } else {
+        let radius = mesh.points.iter().map(|p| p.length()).fold(0.0, f64::max);
+        object.instances.retain(|place| is_seen(place.at, radius * place.scale));
+    }
+    object
 }
 
 #[test]
