@@ -4,7 +4,7 @@ use super::relief::Heights;
 use super::scattered::{is_seen, spots};
 use super::{AssembleError, Recipe};
 use crate::math::{Colour, DVec3, Memory, Stream};
-use crate::model::pattern::patches;
+use crate::model::pattern::{PATCH, patches};
 use crate::model::{BackgroundSpec, Body, Digits, GroundSpec, Instance, Material, Mesh, Model, Object};
 use crate::skin::{distant_leaves, distant_limbs, distant_step, distant_triangles};
 
@@ -12,8 +12,6 @@ use crate::skin::{distant_leaves, distant_limbs, distant_step, distant_triangles
 const SIZES: [f64; 2] = [0.55, 1.15];
 /// They stand in the ground by this share of their height, since their limbs have no ends.
 const SUNK: f64 = 0.01;
-/// Groves are so many units of their pattern wide.
-const UNIT: f64 = 1.5;
 
 /// Adds what `spec` says behind the objects of `model`, on ground of these heights.
 pub(super) fn add_background(
@@ -51,7 +49,7 @@ fn places(
 ) -> Result<Vec<Instance>, AssembleError> {
     let camera = &model.camera;
     let share = patches();
-    let unit = spec.groves / UNIT;
+    let unit = spec.groves / PATCH;
     let sunk = model.bounds().size().z.max(0.0) * SUNK;
     let mut places = Vec::new();
     for spot in spots(camera, spec.apart, spec.to, stream, memory)? {
@@ -59,8 +57,11 @@ fn places(
         let far = spot.at.distance(camera.at.truncate());
         let is_grove = share.at(DVec3::new(x / unit, 1.0, y / unit)) > 1.0 - spec.share;
         let is_on = ground.and_then(|(ground, _)| ground.radius).is_none_or(|radius| spot.at.length() <= radius);
+        if !is_on || !is_grove || !(spec.from..=spec.to).contains(&far) {
+            continue;
+        }
         let at = DVec3::new(x, y, ground.map_or(0.0, |(_, heights)| heights.at(x, y)) - sunk);
-        if is_on && is_grove && (spec.from..=spec.to).contains(&far) && is_seen(camera, at, spec.apart) {
+        if is_seen(camera, at, spec.apart) {
             let scale = Digits(3).round(SIZES[0] + (SIZES[1] - SIZES[0]) * spot.size);
             places.push(Instance { at, turn: libm::floor(spot.turn * 360.0), scale });
         }

@@ -167,7 +167,7 @@ fn mesh_mark(i: usize) -> String {
 pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin) -> PovValues {
     let prefix = identifier(name);
     let bounds = model.bounds();
-    let extent = if bounds.is_empty() { 1.0 } else { bounds.size().max_element() };
+    let extent = bounds.extent();
     let digits = Digits::for_size(extent);
     let point = |p: DVec3| vector(to_pov(p), digits);
     let own = || model.objects.iter().filter(|object| !object.is_scenery);

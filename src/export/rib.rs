@@ -9,7 +9,7 @@ use super::rib_options::RibOptions;
 use super::rib_sheets::sheet_bytes_needed;
 use super::rib_stage::in_front;
 use super::rib_surface::is_leaf;
-use super::rib_values::{RibValues, has_casters, near, values};
+use super::rib_values::{RibValues, has_casters, values};
 use super::{Origin, TemplateError, Templates};
 use crate::model::{Body, Light, Limbs, Model, Object, Pattern};
 
@@ -53,7 +53,10 @@ impl<'a> Rib<'a> {
     pub fn bytes_needed(model: &Model, size: [u32; 2], options: RibOptions) -> u64 {
         let limbs = model.objects.iter().filter_map(|object| object.body.limbs());
         let fewer = limbs.filter(|_| options.detail > 0.0).map(Limbs::bytes_within).max();
-        sheet_bytes_needed(model, size) + fewer.unwrap_or(0)
+        // Scenery is cut off before the camera, one object after the other.
+        let scenery = model.objects.iter().filter(|object| object.is_scenery);
+        let cut = scenery.map(|object| object.body.bytes() as u64 + size_of_val(&object.instances[..]) as u64).max();
+        sheet_bytes_needed(model, size) + fewer.max(cut).unwrap_or(0)
     }
 
     /// The text of `NAME.rib`, without the line that tells whether it was edited.
@@ -138,7 +141,7 @@ impl<'a> Rib<'a> {
     /// `object`, without what the picture is too coarse to show or what is behind the camera.
     fn detailed<'o>(&self, object: &'o Object) -> Cow<'o, Object> {
         match &object.body {
-            _ if object.is_scenery => Cow::Owned(in_front(object, &self.model.camera, near(self.model))),
+            _ if object.is_scenery => Cow::Owned(in_front(object, &self.model.camera, self.values.near)),
             Body::Limbs(limbs) if self.options.detail > 0.0 => {
                 let error = self.options.detail * object.pixel(&self.model.camera, self.width);
                 let (name, instances) = (object.name.clone(), object.instances.clone());

@@ -43,6 +43,9 @@ pub(super) struct RibValues {
     casters: &'static str,
     /// Is there an archive of what stands about?
     stage: bool,
+    /// Nothing nearer to the camera is seen.
+    #[serde(skip)]
+    pub near: f64,
 }
 
 #[derive(Serialize)]
@@ -82,7 +85,7 @@ struct MapValues {
 /// The values of `model`, whose files are called `name`.
 pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin, options: RibOptions) -> RibValues {
     let bounds = model.bounds();
-    let extent = extent(&bounds);
+    let extent = bounds.extent();
     let digits = Digits::for_size(extent);
     let sheets = sheets(model, size, digits);
     let stem = plain(name);
@@ -113,6 +116,7 @@ pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin,
         ray_bias: (options.shadows == RibShadows::Rays).then(|| number(extent * RAY_BIAS, digits)),
         linear: options.linear,
         stage: model.has_scenery(),
+        near: extent * NEAR,
         casters: if has_casters(model, options) { "casters" } else { "archive" },
         stem,
     }
@@ -120,16 +124,6 @@ pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin,
 
 /// Nothing nearer to the camera is seen, as a share of the extent.
 const NEAR: f64 = 1e-3;
-
-/// Nothing nearer to the camera of `model` is seen.
-pub(super) fn near(model: &Model) -> f64 {
-    extent(&model.bounds()) * NEAR
-}
-
-/// The size of what is within `bounds`.
-fn extent(bounds: &Bounds) -> f64 {
-    if bounds.is_empty() { 1.0 } else { bounds.size().max_element() }
-}
 
 fn camera_values(camera: &Camera, bounds: Bounds, extent: f64, sheets: &[Sheet], digits: Digits) -> CameraValues {
     let frame = camera.frame();

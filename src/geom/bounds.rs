@@ -107,4 +107,10 @@ impl Bounds {
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()
     }
+
+    /// Its greatest side, by which distances and digits are chosen; 1 where it is empty.
+    #[must_use]
+    pub fn extent(&self) -> f64 {
+        if self.is_empty() { 1.0 } else { self.size().max_element() }
+    }
 }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::pattern::{Expr, swells};
+use super::pattern::{Expr, PATCH, swells};
 use crate::math::DVec3;
 
 /// Rises of the ground, from drifts and tussocks to hills: one layer of its relief.
@@ -29,9 +29,6 @@ pub struct Relief {
     share: Expr,
 }
 
-/// Swells are so many units wide.
-const UNIT: f64 = 1.5;
-
 impl Relief {
     /// The layer that `spec` describes.
     #[must_use]
@@ -47,7 +44,7 @@ impl Relief {
         if begun == 0.0 {
             return 0.0;
         }
-        let unit = size / UNIT;
+        let unit = size / PATCH;
         // No layer begins or ends with an edge.
         height * begun * begun * (3.0 - 2.0 * begun) * self.share.at(DVec3::new(x / unit, 0.0, y / unit))
     }

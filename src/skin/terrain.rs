@@ -11,14 +11,13 @@ const SECTORS: u32 = 192;
 pub fn terrain(radius: f64, least: f64, height: impl Fn(f64, f64) -> f64) -> Mesh {
     let corner = |x: f64, y: f64| DVec3::new(x, y, height(x, y));
     let turn = std::f64::consts::TAU / f64::from(SECTORS);
+    let ways: Vec<[f64; 2]> =
+        (0..SECTORS).map(|i| f64::from(i) * turn).map(|angle| [libm::cos(angle), libm::sin(angle)]).collect();
     let mut mesh = Mesh { points: vec![corner(0.0, 0.0)], ..Mesh::default() };
     let mut at = least;
     loop {
         let r = at.min(radius);
-        mesh.points.extend((0..SECTORS).map(|i| {
-            let (sin, cos) = (libm::sin(f64::from(i) * turn), libm::cos(f64::from(i) * turn));
-            corner(r * cos, r * sin)
-        }));
+        mesh.points.extend(ways.iter().map(|[x, y]| corner(r * x, r * y)));
         if at >= radius {
             break;
         }

@@ -14,7 +14,7 @@ pub use expr::Expr;
 pub use figure::Figure;
 pub use lenticels::Lenticels;
 pub use moss::Moss;
-pub use mottle::{Mottle, patches, swells};
+pub use mottle::{Mottle, PATCH, patches, swells};
 
 use schemars::JsonSchema;
 use serde::Deserialize;

@@ -65,13 +65,16 @@ impl Figure for Mottle {
     }
 }
 
+/// The larger patches are about so many units wide.
+pub const PATCH: f64 = 1.5;
+
 /// As [`patches`], without the smallest: what a mesh is fine enough for.
 #[must_use]
 pub fn swells() -> Expr {
     (waves(&LARGE) * 0.2 + waves(&SMALL) * 0.1 + 0.5).share()
 }
 
-/// Patches of several sizes, the larger ones about one and a half units wide: from 0 to 1, half of it on the mean.
+/// Patches of several sizes, the larger ones [`PATCH`] units wide: from 0 to 1, half of it on the mean.
 #[must_use]
 pub fn patches() -> Expr {
     let [large, small, smallest] = WEIGHTS;
