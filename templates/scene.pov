@@ -56,6 +56,17 @@ camera {
   up y*{{ camera.width }}*image_height/image_width
 {% endif %}
   look_at {{ camera.look_at }}
+{% if camera.lens %}
+#if (!{{ prefix }}_Exact)
+  // What is nearer or farther blurs.
+  aperture {{ camera.lens.aperture }}
+  focal_point {{ camera.lens.focus }}
+  blur_samples {% if natural %}19 + 36*{{ prefix }}_Quality{% else %}55{% endif %}
+
+  confidence 0.95
+  variance 1/2000
+#end
+{% endif %}
 }
 {% for light in lights %}
 #if ({{ prefix }}_Exact)

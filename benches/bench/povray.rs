@@ -43,6 +43,7 @@ fn model(count: usize) -> Model {
             look_at: DVec3::new(0.0, 0.0, 6.0),
             projection: Projection::Perspective { angle: 1.0 },
             aspect: f64::from(SIZE[0]) / f64::from(SIZE[1]),
+            ..Camera::FRONT
         },
         lights: vec![Light::Sun {
             towards: DVec3::new(0.4, -0.5, 0.7).normalize(),

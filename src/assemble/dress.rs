@@ -31,7 +31,10 @@ pub(super) fn dress(
             .ok_or(BodyError::Empty)
             .and_then(|root| Object::of_mesh(name, &tubes(skeletons, root), to_world(root + at, is_flat), material)),
     };
-    let whole = whole.map_err(wrong)?;
+    let mut whole = whole.map_err(wrong)?;
+    if let (Body::Limbs(limbs), Some(_)) = (&mut whole.body, materials[material].1.tips) {
+        limbs.measure_ends();
+    }
     let (first, digits) = (whole.instances[0].at, whole.digits);
     let mut parts = coloured(scene, recipe, whole, materials);
     add_thorns(scene, recipe, &mut parts).map_err(wrong)?;

@@ -85,7 +85,13 @@ mod tests {
 
     fn camera(y: f64) -> Camera {
         let projection = Projection::Perspective { angle: 0.8 };
-        Camera { at: DVec3::new(0.0, y, 1.6), look_at: DVec3::new(0.0, 0.0, 1.6), projection, aspect: 1.3 }
+        Camera {
+            at: DVec3::new(0.0, y, 1.6),
+            look_at: DVec3::new(0.0, 0.0, 1.6),
+            projection,
+            aspect: 1.3,
+            ..Camera::FRONT
+        }
     }
 
     fn all(camera: &Camera) -> Vec<Instance> {

@@ -113,5 +113,5 @@ fn front(view: &Backdrop, aspect: f64) -> Camera {
     let middle = to_world(view.frame.bounds().centre(), true);
     let [width, height] = view.frame.extent;
     let at = middle - DVec3::Y * (width + height);
-    Camera { at, look_at: middle, projection: Projection::Parallel { width }, aspect }
+    Camera { at, look_at: middle, projection: Projection::Parallel { width }, aspect, ..Camera::FRONT }
 }

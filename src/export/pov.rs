@@ -3,7 +3,7 @@
 
 use std::io::{self, Write};
 
-use super::pov_body::{write_body, write_mesh};
+use super::pov_body::{write_body, write_ends, write_mesh};
 use super::pov_values::{PovValues, stage_values, values};
 use super::{Origin, TemplateError, Templates};
 use crate::model::{Body, Digits, Model, Sky};
@@ -79,6 +79,11 @@ impl<'a> Pov<'a> {
                 if let Some(Body::Posed(mesh, _)) = object.map(|object| &object.body) {
                     write_mesh(mesh, Digits(MESH_DIGITS), &mut out)?;
                 }
+            } else if let Some(i) = part.strip_prefix('t') {
+                let object = i.parse().ok().and_then(|i: usize| self.model.objects.get(i));
+                if let Some((limbs, digits)) = object.and_then(|object| Some((object.body.limbs()?, object.digits))) {
+                    write_ends(limbs, digits, &mut out)?;
+                }
             } else if let Some(of) =
                 part.parse().ok().and_then(|i: usize| values.objects.iter().find(|of| of.number == i))
             {
@@ -87,7 +92,7 @@ impl<'a> Pov<'a> {
                 let texture = values.materials.iter().find(|of| of.number == object.material);
                 let texture = texture.map_or("", |of| of.id.as_str());
                 let posed = of.posed.as_deref().unwrap_or_default();
-                write_body(object, material.pattern.as_ref(), texture, posed, &mut out)?;
+                write_body(object, material, texture, posed, &mut out)?;
             }
         }
         Ok(())
@@ -113,7 +118,7 @@ impl<'a> Pov<'a> {
     #[must_use]
     pub fn sky(&self) -> Option<(&Panorama, f64)> {
         match &self.model.sky {
-            Sky::Picture { picture, strength, .. } => Some((picture, *strength)),
+            Sky::Picture { picture, strength, .. } => Some((picture, *strength * self.model.camera.gain)),
             Sky::Gradient { .. } => None,
         }
     }

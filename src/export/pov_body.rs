@@ -7,19 +7,20 @@ use super::decimal::{number, push_number, push_vector, vector};
 use super::pov_text::to_pov;
 use crate::geom::frustum;
 use crate::math::DVec3;
-use crate::model::{Body, Digits, LimbFrame, Limbs, Mesh, Object, Pattern, Pose, limb_frames};
+use crate::model::pattern::STEPS;
+use crate::model::{Body, Digits, LimbFrame, Limbs, Material, Mesh, Object, Pose, limb_frames};
 
 /// Writes what `object` is made of. Where its material has a pattern, limbs that are thick enough to show it have
-/// `texture`, laid along them. `one` is what its mesh is declared as, where that has poses.
+/// `texture`, laid along them, and where it has tips, ends have theirs. `one` is what its mesh is declared as, where that has poses.
 pub(super) fn write_body(
     object: &Object,
-    pattern: Option<&Pattern>,
+    material: &Material,
     texture: &str,
     one: &str,
     out: &mut impl Write,
 ) -> io::Result<()> {
     match &object.body {
-        Body::Limbs(limbs) => write_limbs(limbs, object.digits, pattern, texture, out),
+        Body::Limbs(limbs) => write_limbs(limbs, object.digits, material, texture, out),
         Body::Mesh(mesh) => write_mesh(mesh, object.digits, out),
         Body::Posed(_, poses) => write_poses(poses, object.digits, one, out),
     }
@@ -28,16 +29,18 @@ pub(super) fn write_body(
 fn write_limbs(
     limbs: &Limbs,
     digits: Digits,
-    pattern: Option<&Pattern>,
+    material: &Material,
     texture: &str,
     out: &mut impl Write,
 ) -> io::Result<()> {
-    let frames = pattern.map(|pattern| (limb_frames(limbs), pattern.figure().least_radius()));
-    let laid = |ball: u32| match &frames {
-        Some((frames, least)) if limbs.balls[ball as usize].radius >= *least => {
-            format!(" texture{{{texture} {}}}", matrix(&frames[ball as usize], digits))
+    let frames = material.pattern.as_ref().map(|pattern| (limb_frames(limbs), pattern.figure()));
+    let laid = |ball: u32| {
+        if let Some(step @ 1..) = material.tips.map(|tips| tips.steps(limbs, ball)) {
+            return Some(format!(" texture{{{}}}", tip_texture(texture, step)));
         }
-        _ => String::new(),
+        let (frames, figure) = frames.as_ref()?;
+        let name = texture_at(texture, figure.clarity(limbs.balls[ball as usize].radius))?;
+        Some(format!(" texture{{{name} {}}}", matrix(&frames[ball as usize], digits)))
     };
     let scale = digits.scale();
     let mut text = Vec::with_capacity(BUFFER + 256);
@@ -46,7 +49,7 @@ fn write_limbs(
         push_vector(&mut text, to_pov(ball.centre), digits, scale);
         text.push(b',');
         push_number(&mut text, ball.radius, digits, scale);
-        text.extend_from_slice(laid(i).as_bytes());
+        text.extend_from_slice(laid(i).unwrap_or_default().as_bytes());
         text.extend_from_slice(b"}\n");
         flush_at(&mut text, out, BUFFER)?;
     }
@@ -69,8 +72,36 @@ fn write_limbs(
         text.push(b',');
         push_number(&mut text, rb, digits, scale);
         text.extend_from_slice(b" open");
-        text.extend_from_slice(laid(end).as_bytes());
+        text.extend_from_slice(laid(end).unwrap_or_default().as_bytes());
         text.extend_from_slice(b"}\n");
+        flush_at(&mut text, out, BUFFER)?;
+    }
+    flush_at(&mut text, out, 1)
+}
+
+/// The texture of so many steps of a material's tips.
+pub(super) fn tip_texture(texture: &str, step: u8) -> String {
+    format!("{texture}_Tip{step}")
+}
+
+/// The texture of limbs that show so much of a pattern; `None` where that is the object's own, without any.
+pub(super) fn texture_at(texture: &str, clarity: f64) -> Option<String> {
+    let step = libm::round(clarity * f64::from(STEPS)) as u32;
+    match step {
+        0 => None,
+        STEPS => Some(texture.to_owned()),
+        _ => Some(format!("{texture}_Young{step}")),
+    }
+}
+
+/// Writes where limbs end, point by point.
+pub(super) fn write_ends(limbs: &Limbs, digits: Digits, out: &mut impl Write) -> io::Result<()> {
+    let ends = limbs.ends();
+    let mut text = Vec::with_capacity(BUFFER + 256);
+    for (i, &ball) in ends.iter().enumerate() {
+        text.extend_from_slice(b"  ");
+        push_vector(&mut text, to_pov(limbs.balls[ball as usize].centre), digits, digits.scale());
+        text.extend_from_slice(if i + 1 < ends.len() { b",\n" } else { b"\n" });
         flush_at(&mut text, out, BUFFER)?;
     }
     flush_at(&mut text, out, 1)

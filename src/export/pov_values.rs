@@ -5,14 +5,20 @@ use serde::Serialize;
 use super::Origin;
 use super::decimal::{number, vector};
 use super::identifier::{identifier, part_identifier, plain};
+use super::pov_body::{texture_at, tip_texture};
 use super::pov_text::{PLAIN, colour, to_pov};
-use crate::math::DVec3;
+use crate::math::{Colour, DVec3};
+use crate::model::pattern::{Figure, STEPS};
 use crate::model::{
     Body, Camera, Digits, Dome, FADE, Ground, Instance, Light, Look, Material, Model, Object, Pattern, Projection, Sky,
+    Tips,
 };
 
 /// With more primitives than this the scene takes the objects inline, since `object { Name }` copies a union.
 const MOST_COPIED: usize = 1_000_000;
+/// POV-Ray's normals are to slopes of a pattern as this to 1 (measured; 7.5 for the least of slopes: it adds the whole slope, of which
+/// that across the surface is not one of the surface).
+const BUMP: f64 = 5.0;
 /// Lights that stand for the sky in the studio look: more take longer, fewer show as separate shadows.
 const DOME: u32 = 96;
 
@@ -28,6 +34,10 @@ pub(super) struct PovValues {
     width: u32,
     height_pixels: u32,
     height: String,
+    /// Corners of all, and the way from there to the camera.
+    min: String,
+    max: String,
+    side: String,
     inline: bool,
     extent: String,
     pub objects: Vec<ObjectValues>,
@@ -55,6 +65,12 @@ pub(super) struct ObjectValues {
     pub number: usize,
     pub id: String,
     height: String,
+    /// Its corners, from its foot.
+    min: String,
+    max: String,
+    /// How many ends its limbs have, and what stands for them in the text.
+    ends: usize,
+    tips: String,
     foot: String,
     /// How it is scaled and turned where it stands first, at its foot.
     turned: String,
@@ -63,6 +79,8 @@ pub(super) struct ObjectValues {
     keyword: &'static str,
     shadow: bool,
     texture: String,
+    /// That of the lower side of its triangles, where that is another.
+    below: Option<String>,
     /// What is posed, if anything is: what it is declared as.
     pub posed: Option<String>,
     /// Its mesh, where it is declared: objects that pose the same have one.
@@ -85,7 +103,13 @@ pub(super) struct MaterialValues {
     roughness: String,
     phong: String,
     phong_size: String,
+    /// The colour of the lower side, where that is another.
+    below: Option<String>,
     pattern: Option<PatternValues>,
+    /// What limbs show that are too thin for all of the pattern.
+    younger: Vec<YoungValues>,
+    /// The textures of the ends of limbs, and their colours.
+    tips: Vec<[String; 2]>,
 }
 
 #[derive(Clone, Serialize)]
@@ -93,8 +117,18 @@ struct PatternValues {
     function: String,
     colour: String,
     size: String,
+    /// How much the slope of the function counts.
+    bump: Option<String>,
     /// The material's colour where it is too thin for the pattern.
     mean: String,
+}
+
+#[derive(Clone, Serialize)]
+struct YoungValues {
+    id: String,
+    colour: String,
+    over: String,
+    bump: Option<String>,
 }
 
 #[derive(Clone, Serialize)]
@@ -104,6 +138,14 @@ struct CameraValues {
     look_at: String,
     angle: Option<String>,
     width: Option<String>,
+    lens: Option<LensValues>,
+}
+
+#[derive(Clone, Serialize)]
+struct LensValues {
+    aperture: String,
+    /// A point that is sharp.
+    focus: String,
 }
 
 #[derive(Clone, Serialize)]
@@ -163,9 +205,21 @@ fn mesh_mark(i: usize) -> String {
     format!("\u{1}m{i}\u{1}")
 }
 
+/// What stands for the ends of the limbs of object `i`.
+fn tips_mark(i: usize) -> String {
+    format!("\u{1}t{i}\u{1}")
+}
+
+/// The level direction from what a camera looks at to where it stands, of length 1.
+fn side(camera: &Camera) -> DVec3 {
+    let back = camera.at - camera.look_at;
+    DVec3::new(back.x, back.y, 0.0).normalize_or(DVec3::NEG_Y)
+}
+
 /// The values of `model`, whose files and declarations are called `name`.
 pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin) -> PovValues {
     let prefix = identifier(name);
+    let gain = model.camera.gain;
     let bounds = model.bounds();
     let extent = bounds.extent();
     let digits = Digits::for_size(extent);
@@ -183,6 +237,9 @@ pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin)
         width: size[0],
         height_pixels: size[1],
         height: number(bounds.max.z.max(0.0), digits),
+        min: point(bounds.min),
+        max: point(bounds.max),
+        side: vector(to_pov(side(&model.camera)), PLAIN),
         inline: own().map(|object| object.body.primitives()).sum::<usize>() > MOST_COPIED
             && own().all(|object| object.instances.len() == 1),
         extent: number(extent * 100.0, digits),
@@ -190,13 +247,13 @@ pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin)
         stage: model.has_scenery().then(|| [format!("{}-stage", plain(name)), format!("{prefix}_Stage")]),
         materials: all_material_values(model, &prefix, false),
         camera: camera_values(&model.camera, digits),
-        lights: model.lights.iter().map(|light| light_values(light, extent, &point)).collect(),
+        lights: model.lights.iter().map(|light| light_values(light, gain, extent, &point)).collect(),
         look: if is_natural { "natural" } else { "studio" },
         natural: is_natural.then(|| natural_values(model, &dome, extent, digits)),
-        dome: lights.into_iter().map(|(towards, c)| [vector(to_pov(towards), PLAIN), colour(c)]).collect(),
-        sky: sky_values(&model.sky),
+        dome: lights.into_iter().map(|(towards, c)| [vector(to_pov(towards), PLAIN), colour(c.times(gain))]).collect(),
+        sky: sky_values(&model.sky, gain),
         air: model.air.map(|air| [number(air.clear, digits), number(air.height, digits)]),
-        ground: model.ground.as_ref().map(|ground| ground_values(ground, digits)),
+        ground: model.ground.as_ref().map(|ground| ground_values(ground, gain, digits)),
         prefix,
     }
 }
@@ -223,7 +280,8 @@ pub(super) fn stage_values(model: &Model, of: &PovValues) -> Option<PovValues> {
 fn all_material_values(model: &Model, prefix: &str, is_scenery: bool) -> Vec<MaterialValues> {
     let is_of_scenery = |i: usize| model.objects.iter().any(|object| object.material == i && object.is_scenery);
     let materials = model.materials.iter().enumerate().filter(|&(i, _)| is_of_scenery(i) == is_scenery);
-    materials.map(|(i, (name, material))| material_values(i, material_id(prefix, name), material)).collect()
+    let gain = model.camera.gain;
+    materials.map(|(i, (name, material))| material_values(i, material_id(prefix, name), material, gain)).collect()
 }
 
 /// The objects that are scenery, or all others.
@@ -244,11 +302,16 @@ fn object_values(model: &Model, prefix: &str, is_scenery: bool) -> Vec<ObjectVal
             number: i,
             id: ids[nth].clone(),
             height: number(object.body.height(), object.digits),
+            min: vector(to_pov(object.body.bounds().min), object.digits),
+            max: vector(to_pov(object.body.bounds().max), object.digits),
+            ends: object.body.limbs().filter(|limbs| !limbs.is_thorns).map_or(0, |limbs| limbs.ends().len()),
+            tips: tips_mark(i),
             foot: vector(to_pov(object.instances[0].at), object.digits),
             turned: turned(&object.instances[0]),
             places: object.instances[1..].iter().map(|place| placed(place, object.digits)).collect(),
             keyword: keyword(&object.body),
             shadow: object.shadow,
+            below: (material.paler > 0.0 && object.body.limbs().is_none()).then(|| format!("{texture}_Below")),
             texture: if is_plain(object, material) { format!("{texture}_Plain") } else { texture },
             posed: posed.and_then(id_of).map(|id| format!("{id}_One")),
             one: (posed == Some(i)).then(|| mesh_mark(i)),
@@ -269,15 +332,18 @@ fn first_posed(model: &Model, i: usize) -> Option<usize> {
     model.objects.iter().position(|object| matches!(&object.body, Body::Posed(mesh, _) if mesh == own))
 }
 
-fn material_values(nth: usize, id: String, m: &Material) -> MaterialValues {
+fn material_values(nth: usize, id: String, m: &Material, gain: f64) -> MaterialValues {
     MaterialValues {
         number: nth,
+        tips: m.tips.as_ref().map_or_else(Vec::new, |tips| tip_values(m, tips, &id)),
+        younger: m.pattern.as_ref().map_or_else(Vec::new, |pattern| young_values(m, pattern, &id)),
         id,
         colour: colour(m.colour),
-        ambient: number(m.ambient, PLAIN),
+        ambient: number(m.ambient * gain, PLAIN),
         diffuse: number(m.diffuse, PLAIN),
         through: number(m.through, PLAIN),
-        emission: number(m.emission, PLAIN),
+        below: (m.paler > 0.0).then(|| colour(m.below(m.mean_colour()))),
+        emission: number(m.emission * gain, PLAIN),
         specular: number(m.specular, PLAIN),
         roughness: number(m.roughness, PLAIN),
         phong: number(m.phong, PLAIN),
@@ -294,13 +360,18 @@ fn camera_values(camera: &Camera, digits: Digits) -> CameraValues {
         Projection::Parallel { width } => ("orthographic", None, Some(number(width, digits))),
     };
     let [location, look_at] = [camera.at, camera.look_at].map(|p| vector(to_pov(p), digits));
-    CameraValues { kind, location, look_at, angle, width }
+    let lens = (!camera.lens.is_pinhole()).then(|| LensValues {
+        // POV-Ray's number is twice the width of the opening (measured).
+        aperture: number(camera.lens.aperture * 2.0, digits),
+        focus: vector(to_pov(camera.at + camera.frame()[2] * camera.lens.focus), digits),
+    });
+    CameraValues { kind, location, look_at, angle, width, lens }
 }
 
-fn sky_values(sky: &Sky) -> SkyValues {
-    let horizon = colour(sky.at_horizon());
+fn sky_values(sky: &Sky, gain: f64) -> SkyValues {
+    let horizon = colour(sky.at_horizon().times(gain));
     match sky {
-        Sky::Gradient { zenith, .. } => SkyValues { horizon, zenith: Some(colour(*zenith)), turn: None },
+        Sky::Gradient { zenith, .. } => SkyValues { horizon, zenith: Some(colour(zenith.times(gain))), turn: None },
         // POV-Ray's pictures begin along +x, ours end along -x.
         Sky::Picture { turn, .. } => SkyValues { horizon, zenith: None, turn: Some(number(180.0 - turn, PLAIN)) },
     }
@@ -310,18 +381,18 @@ fn natural_values(model: &Model, dome: &Dome, extent: f64, digits: Digits) -> Na
     let ground = model.ground.as_ref().map_or(0.0, |ground| ground.reach);
     NaturalValues {
         leafy: model.objects.iter().any(|object| model.materials[object.material].1.through > 0.0),
-        bounce: colour(dome.light(DVec3::NEG_Z)),
+        bounce: colour(dome.light(DVec3::NEG_Z).times(model.camera.gain)),
         strength: number(dome.strength(), PLAIN),
-        brightest: number(Dome::BRIGHTEST * dome.strength(), PLAIN),
+        brightest: number(Dome::BRIGHTEST * dome.strength() * model.camera.gain, PLAIN),
         far: number(2.0 * ground.max(extent * 50.0), digits),
     }
 }
 
-fn ground_values(ground: &Ground, digits: Digits) -> GroundValues {
+fn ground_values(ground: &Ground, gain: f64, digits: Digits) -> GroundValues {
     GroundValues {
         height: number(ground.height, digits),
         colour: colour(ground.material.colour),
-        ambient: number(ground.material.ambient, PLAIN),
+        ambient: number(ground.material.ambient * gain, PLAIN),
         diffuse: number(ground.material.diffuse, PLAIN),
         reach: number(ground.reach, digits),
         fade: number(FADE, PLAIN),
@@ -330,15 +401,15 @@ fn ground_values(ground: &Ground, digits: Digits) -> GroundValues {
     }
 }
 
-fn light_values(light: &Light, extent: f64, point: &dyn Fn(DVec3) -> String) -> LightValues {
+fn light_values(light: &Light, gain: f64, extent: f64, point: &dyn Fn(DVec3) -> String) -> LightValues {
     match *light {
         Light::Sun { towards, colour: c, size, shadow } => {
             let distance = extent * 100.0;
             let wide = 2.0 * distance * libm::tan(size * 0.5);
             LightValues {
                 location: point(towards * distance),
-                colour: colour(c),
-                studio: colour(light.studio()),
+                colour: colour(c.times(gain)),
+                studio: colour(light.studio().times(gain)),
                 parallel: true,
                 across: (size > 0.0 && shadow).then(|| number(wide, PLAIN)),
                 fade: None,
@@ -347,8 +418,8 @@ fn light_values(light: &Light, extent: f64, point: &dyn Fn(DVec3) -> String) -> 
         }
         Light::Point { at, colour: c, shadow, fade } => LightValues {
             location: point(at),
-            colour: colour(c),
-            studio: colour(light.studio()),
+            colour: colour(c.times(gain)),
+            studio: colour(light.studio().times(gain)),
             parallel: false,
             across: None,
             fade: fade.map(|fade| number(fade, PLAIN)),
@@ -385,6 +456,35 @@ fn keyword(body: &Body) -> &'static str {
     if parts < 2 { "object" } else { "union" }
 }
 
+/// More and more of what the ends of limbs show.
+fn tip_values(material: &Material, tips: &Tips, id: &str) -> Vec<[String; 2]> {
+    let shown = |step| [tip_texture(id, step), colour(tips.over(material.mean_colour(), step))];
+    (1..=Tips::STEPS).map(shown).collect()
+}
+
+/// Less and less of a pattern.
+fn young_values(material: &Material, pattern: &Pattern, id: &str) -> Vec<YoungValues> {
+    let figure = pattern.figure();
+    let young = |step: u32| {
+        let clarity = f64::from(step) / f64::from(STEPS);
+        let mixed = |full: Colour| colour(material.mean_colour().mixed(full, clarity));
+        Some(YoungValues {
+            id: texture_at(id, clarity)?,
+            colour: mixed(material.colour),
+            over: mixed(figure.colour()),
+            bump: bump(figure, clarity),
+        })
+    };
+    let is_thin = figure.clarity(0.0) < 1.0;
+    (1..STEPS).rev().filter(|_| is_thin).filter_map(young).collect()
+}
+
+/// How much the slope of a pattern counts in POV-Ray's terms.
+fn bump(figure: &dyn Figure, clarity: f64) -> Option<String> {
+    let height = figure.height() * clarity;
+    (height != 0.0).then(|| number(height * BUMP, PLAIN))
+}
+
 /// A pattern as POV-Ray's own functions.
 fn pattern_values(material: &Material, pattern: &Pattern) -> PatternValues {
     let figure = pattern.figure();
@@ -392,6 +492,7 @@ fn pattern_values(material: &Material, pattern: &Pattern) -> PatternValues {
         function: figure.share().to_string(),
         colour: colour(figure.colour()),
         size: number(figure.size(), PLAIN),
+        bump: bump(figure, 1.0),
         mean: colour(material.mean_colour()),
     }
 }

@@ -69,7 +69,7 @@ fn placed(place: &Instance, pose: Option<&Pose>, digits: Digits) -> String {
 /// Writes what an object is made of, moved by `offset`.
 fn write_primitives(object: &Object, material: &Material, offset: DVec3, out: &mut impl Write) -> io::Result<()> {
     match &object.body {
-        Body::Limbs(limbs) => write_limbs(limbs, offset, object.digits, material.pattern.as_ref(), out),
+        Body::Limbs(limbs) => write_limbs(limbs, offset, object.digits, material, out),
         Body::Mesh(mesh) | Body::Posed(mesh, _) => {
             let mut pieces = mesh.triangles.chunks(MOST_TRIANGLES);
             pieces.try_for_each(|triangles| write_mesh(mesh, triangles, offset, object.digits, out))

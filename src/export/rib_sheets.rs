@@ -43,7 +43,7 @@ pub(super) fn sheets(model: &Model, size: [u32; 2], digits: Digits) -> Vec<Sheet
     let count = sky_squares(model, size);
     let seen = |from, way: DVec3| model.hazed(from, way, f64::INFINITY, model.sky.colour(way));
     let mut grid = Grid::default();
-    for square in squares(count, size) {
+    for square in squares(count, beyond(camera, size)) {
         let rays = square.map(|[x, y]| ray(camera, x, y));
         // To the wall, which stands across the view.
         grid.polygon(rays.map(|(from, way)| (at_depth(camera, from, way, wall), seen(from, way))).to_vec());
@@ -62,7 +62,7 @@ fn haze(model: &Model, size: [u32; 2], wall: f64, digits: Digits) -> Option<Shee
         is_below.then(|| at_depth(camera, from, way, wall * BEFORE))
     };
     let mut grid = Grid::default();
-    for square in squares([1, 1], size) {
+    for square in squares([1, 1], beyond(camera, size)) {
         grid.polygon(clip(square, meets).into_iter().map(|p| (p, model.sky.at_horizon())).collect());
     }
     let is_seen = !grid.corners.is_empty();
@@ -108,7 +108,7 @@ fn ground(model: &Model, size: [u32; 2], digits: Digits) -> Option<Sheet> {
         let share = if ground.radius.is_some() { 1.0 } else { fade.clamp(0.0, 1.0) };
         (p, Colour([0, 1, 2].map(|i| own[i] * share + horizon[i] / lit(i) * (1.0 - share))))
     };
-    for square in squares(SQUARES, size) {
+    for square in squares(SQUARES, beyond(camera, size)) {
         let corners: Vec<(DVec3, Colour)> = clip(square, meets).into_iter().map(shown).collect();
         far = corners.iter().map(|(p, _)| depth(camera, *p)).fold(far, f64::max);
         grid.polygon(corners);
@@ -152,12 +152,21 @@ fn at_depth(camera: &Camera, from: DVec3, way: DVec3, far: f64) -> DVec3 {
     from + way * ((far - depth(camera, from)) / depth(camera, camera.at + way))
 }
 
-/// The corners of squares that cover a picture of `size` pixels and one more beyond each edge, as fractions of it.
-fn squares([across, down]: [u32; 2], size: [u32; 2]) -> impl Iterator<Item = [[f64; 2]; 4]> {
-    let at = move |i: u32, n: u32, axis: usize| {
-        let slack = 1.0 / f64::from(size[axis]);
-        f64::from(i) / f64::from(n) * (1.0 + 2.0 * slack) - slack
+/// How far sheets reach beyond each edge of a picture of `size` pixels, as fractions of it: a pixel, and as far as a lens blurs what
+/// is far or as near as a quarter of what is sharp.
+fn beyond(camera: &Camera, size: [u32; 2]) -> [f64; 2] {
+    let blur = match camera.projection {
+        Projection::Perspective { angle } => {
+            3.0 * camera.lens.aperture / camera.lens.focus / libm::tan(angle * 0.5) / 4.0
+        }
+        Projection::Parallel { .. } => 0.0,
     };
+    [1.0 / f64::from(size[0]) + blur, 1.0 / f64::from(size[1]) + blur * camera.aspect]
+}
+
+/// The corners of squares that cover a picture and what is this far beyond its edges, as fractions of it.
+fn squares([across, down]: [u32; 2], beyond: [f64; 2]) -> impl Iterator<Item = [[f64; 2]; 4]> {
+    let at = move |i: u32, n: u32, axis: usize| f64::from(i) / f64::from(n) * (1.0 + 2.0 * beyond[axis]) - beyond[axis];
     (0..down).flat_map(move |y| {
         (0..across).map(move |x| {
             [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]].map(|[x, y]| [at(x, across, 0), at(y, down, 1)])

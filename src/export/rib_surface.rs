@@ -2,7 +2,6 @@
 
 use super::decimal::plain_number as number;
 use super::rib_text::{PLAIN, colour};
-use crate::math::Colour;
 use crate::model::{Body, Material, Object};
 
 /// Standard shaders have highlights of exponent 8 / roughness (Aqsis) or 10 / roughness (Pixie), POV-Ray of 1 / roughness.
@@ -15,9 +14,9 @@ pub(super) fn surface(object: &Object, m: &Material) -> String {
     let is_laid = matches!(object.body, Body::Limbs(_));
     let Some(pattern) = m.pattern.filter(|_| is_laid) else { return plain(m, is_leaf(object, m)) };
     let figure = pattern.figure();
-    let [size, mean] = [figure.size(), figure.mean()].map(|x| number(x, PLAIN));
+    let [size, mean, height] = [figure.size(), figure.mean(), figure.height()].map(|x| number(x, PLAIN));
     format!(
-        "Color [{}]\nSurface \"{}\" {} \"float size\" [{size}] \"float mean\" [{mean}] \"color over\" [{}]",
+        "Color [{}]\nSurface \"{}\" {} \"float size\" [{size}] \"float mean\" [{mean}] \"float height\" [{height}] \"color over\" [{}]",
         colour(m.colour),
         figure.name(),
         light(m).join(" "),
@@ -25,23 +24,26 @@ pub(super) fn surface(object: &Object, m: &Material) -> String {
     )
 }
 
-/// Does it let light through, which no standard shader does?
+/// Does it let light through, or is its lower side paler, which no standard shader knows?
 pub(super) fn is_leaf(object: &Object, m: &Material) -> bool {
-    m.through > 0.0 && (m.pattern.is_none() || object.body.limbs().is_none())
+    (m.through > 0.0 || m.paler > 0.0) && (m.pattern.is_none() || object.body.limbs().is_none())
 }
 
 fn plain(m: &Material, is_leaf: bool) -> String {
-    let Colour(c) = m.mean_colour();
+    let mean = m.mean_colour();
     if m.diffuse == 0.0 && m.ambient == 0.0 {
-        return format!("Color [{}]\nSurface \"constant\"", colour(Colour(c.map(|c| c * m.emission))));
+        return format!("Color [{}]\nSurface \"constant\"", colour(mean.times(m.emission)));
     }
-    let through = if is_leaf { format!(" \"float Kt\" [{}]", number(m.through, PLAIN)) } else { String::new() };
+    let through = match is_leaf {
+        true => format!(" \"float Kt\" [{}] \"float paler\" [{}]", number(m.through, PLAIN), number(m.paler, PLAIN)),
+        false => String::new(),
+    };
     let shader = match is_leaf {
         true => "leaf",
         false if shine(m) > 0.0 => "plastic",
         false => "matte",
     };
-    format!("Color [{}]\nSurface \"{shader}\" {}{through}", colour(Colour(c)), light(m).join(" "))
+    format!("Color [{}]\nSurface \"{shader}\" {}{through}", colour(mean), light(m).join(" "))
 }
 
 fn shine(m: &Material) -> f64 {

@@ -39,6 +39,8 @@ pub(super) struct RibValues {
     ray_bias: Option<String>,
     /// Linear light with 16 bits a channel?
     linear: bool,
+    /// All light is multiplied by this.
+    gain: String,
     /// What the maps show: the end of the name of an archive.
     casters: &'static str,
     /// Is there an archive of what stands about?
@@ -51,6 +53,8 @@ pub(super) struct RibValues {
 #[derive(Serialize)]
 struct CameraValues {
     fov: Option<String>,
+    /// Focal length and distance of a lens at f/1.
+    lens: Option<[String; 2]>,
     window: String,
     clipping: String,
     matrix: String,
@@ -115,6 +119,7 @@ pub(super) fn values(model: &Model, name: &str, size: [u32; 2], origin: &Origin,
         air: model.air.map(|air| [number(air.clear, digits), colour(model.sky.at_horizon())]),
         ray_bias: (options.shadows == RibShadows::Rays).then(|| number(extent * RAY_BIAS, digits)),
         linear: options.linear,
+        gain: number(model.camera.gain, PLAIN),
         stage: model.has_scenery(),
         near: extent * NEAR,
         casters: if has_casters(model, options) { "casters" } else { "archive" },
@@ -141,7 +146,11 @@ fn camera_values(camera: &Camera, bounds: Bounds, extent: f64, sheets: &[Sheet],
             (None, format!("-{across} {across} -{up} {up}"))
         }
     };
+    // At f/1 a lens' focal length is the width of its opening.
+    let lens = camera.lens;
+    let lens = (!lens.is_pinhole()).then(|| [lens.aperture, lens.focus].map(|x| number(x, digits)));
     CameraValues {
+        lens,
         fov,
         window,
         clipping: format!("{} {}", number(extent * NEAR, digits), number(far, digits)),

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::identifier::plain;
 use crate::geom::{Mark, MarkKind};
-use crate::math::{Colour, DVec2, DVec3};
+use crate::math::{DVec2, DVec3};
 use crate::model::{Body, Camera, Limbs, Material, Mesh, Model, Projected};
 
 /// How a schematic is drawn.
@@ -233,8 +233,7 @@ fn ink(material: &Material) -> String {
     if material.emission == 0.0 {
         return "#000".to_owned();
     }
-    let Colour(rgb) = material.colour;
-    format!("#{}", Colour(rgb.map(|c| c * material.emission)).hex())
+    format!("#{}", material.colour.times(material.emission).hex())
 }
 
 fn escape(text: &str) -> String {

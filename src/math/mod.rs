@@ -4,6 +4,7 @@
 //! Later stages need never handle platform differences: everything here gives the same bits everywhere.
 
 mod checksum;
+mod colour;
 mod direction;
 mod memory;
 mod name;
@@ -22,9 +23,10 @@ mod weights;
 pub use glam::{DMat3, DVec2, DVec3};
 
 pub use checksum::fnv1a;
+pub use colour::Colour;
 pub use direction::{GOLDEN_ANGLE, from_height, from_polar, from_sin_cos};
 pub use memory::{Memory, OutOfMemory};
-pub use name::{Colour, Degrees, Point, Ref, unknown};
+pub use name::{Degrees, Point, Ref, unknown};
 pub use per_round::PerRound;
 pub use power::power;
 pub(crate) use prefetch::prefetch;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{GrassSpec, Pattern, ReliefSpec};
+use super::{GrassSpec, Pattern, ReliefSpec, Tips};
 use crate::math::{Colour, DVec3, Degrees, Point};
 use crate::raster::Panorama;
 
@@ -27,6 +27,10 @@ pub struct Material {
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 10.0))]
     pub through: f64,
+    /// How much paler the lower side of leaves is: the share of white in its colour.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub paler: f64,
     /// Light of its own, as a multiple of its colour.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1000.0))]
@@ -50,6 +54,9 @@ pub struct Material {
     /// What is drawn over the colour.
     #[serde(default)]
     pub pattern: Option<Pattern>,
+    /// The ends of limbs in another colour.
+    #[serde(default)]
+    pub tips: Option<Tips>,
 }
 
 fn ambient() -> f64 {
@@ -77,12 +84,14 @@ impl Material {
             ambient: ambient(),
             diffuse: diffuse(),
             through: 0.0,
+            paler: 0.0,
             emission: 0.0,
             specular: 0.0,
             roughness: roughness(),
             phong: 0.0,
             phong_size: phong_size(),
             pattern: None,
+            tips: None,
         }
     }
 
@@ -95,8 +104,13 @@ impl Material {
     /// Its colour with this share of its pattern's over it.
     #[must_use]
     pub fn blend(&self, share: f64) -> Colour {
-        let Colour(over) = self.pattern.map_or(self.colour, |pattern| pattern.figure().colour());
-        Colour([0, 1, 2].map(|i| self.colour.0[i] + (over[i] - self.colour.0[i]) * share))
+        self.pattern.map_or(self.colour, |pattern| self.colour.mixed(pattern.figure().colour(), share))
+    }
+
+    /// The colour of a leaf's lower side, whose upper side is of this one.
+    #[must_use]
+    pub fn below(&self, colour: Colour) -> Colour {
+        colour.mixed(Colour([1.0; 3]), self.paler)
     }
 
     /// Does it show a light that falls on it at an angle of this cosine to its normal, negative from behind?
@@ -306,10 +320,7 @@ impl Sky {
     #[must_use]
     pub fn colour(&self, direction: DVec3) -> Colour {
         match self {
-            Self::Gradient { horizon: Colour(a), zenith: Colour(b) } => {
-                let t = direction.z.max(0.0);
-                Colour([0, 1, 2].map(|i| a[i] + (b[i] - a[i]) * t))
-            }
+            Self::Gradient { horizon, zenith } => horizon.mixed(*zenith, direction.z.max(0.0)),
             Self::Picture { picture, turn, strength, .. } => {
                 let turn = Degrees(*turn).radians();
                 let (sin, cos) = (libm::sin(turn), libm::cos(turn));
@@ -318,7 +329,7 @@ impl Sky {
                     direction.y * cos - direction.x * sin,
                     direction.z,
                 );
-                Colour(picture.at(d).map(|x| x * strength))
+                Colour(picture.at(d)).times(*strength)
             }
         }
     }
@@ -328,7 +339,7 @@ impl Sky {
     pub fn at_horizon(&self) -> Colour {
         match self {
             Self::Gradient { horizon, .. } => *horizon,
-            Self::Picture { picture, strength, .. } => Colour(picture.horizon().map(|x| x * strength)),
+            Self::Picture { picture, strength, .. } => Colour(picture.horizon()).times(*strength),
         }
     }
 }

@@ -24,6 +24,9 @@ pub struct Limbs {
     pub segments: Vec<[u32; 2]>,
     /// Thorns on their surface, for renderers that displace it themselves.
     pub thorns: Option<Thorns>,
+    /// Of each ball, the distance to the farthest end of limbs beyond it, where their material has [`super::Tips`]; thorns have that
+    /// of what they stand on. Empty without.
+    pub beyond: Vec<f32>,
     /// Are they the thorns of another object, which such renderers leave out?
     pub is_thorns: bool,
 }
@@ -42,6 +45,26 @@ pub struct Thorns {
 }
 
 impl Limbs {
+    /// The balls from which no limb goes on, by index.
+    #[must_use]
+    pub fn ends(&self) -> Vec<u32> {
+        let mut goes_on = vec![false; self.balls.len()];
+        self.segments.iter().for_each(|&[from, _]| goes_on[from as usize] = true);
+        (0..).zip(&goes_on).filter(|(_, goes_on)| !**goes_on).map(|(i, _)| i).collect()
+    }
+
+    /// Measures how far it is from each ball to the farthest end beyond it. Segments must be in order: what leads to a ball before
+    /// what leaves it.
+    pub fn measure_ends(&mut self) {
+        let mut beyond = vec![0.0_f64; self.balls.len()];
+        for &[from, to] in self.segments.iter().rev() {
+            let [from, to] = [from, to].map(|i| i as usize);
+            let length = self.balls[from].centre.distance(self.balls[to].centre);
+            beyond[from] = beyond[from].max(beyond[to] + length);
+        }
+        self.beyond = beyond.into_iter().map(|x| x as f32).collect();
+    }
+
     /// The balls that no segment joins, by index.
     #[must_use]
     pub fn lone(&self) -> Vec<u32> {
@@ -98,7 +121,9 @@ impl Body {
     #[must_use]
     pub fn bytes(&self) -> usize {
         match self {
-            Self::Limbs(limbs) => size_of_val(&limbs.balls[..]) + size_of_val(&limbs.segments[..]),
+            Self::Limbs(limbs) => {
+                size_of_val(&limbs.balls[..]) + size_of_val(&limbs.segments[..]) + size_of_val(&limbs.beyond[..])
+            }
             Self::Mesh(mesh) => mesh.bytes(),
             Self::Posed(mesh, poses) => mesh.bytes() + size_of_val(&poses[..]),
         }

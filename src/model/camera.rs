@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::{Film, Lens};
 use crate::math::{DVec3, Degrees, Point};
 
 /// Room left around what is fitted, as a share of the picture.
@@ -11,6 +12,8 @@ const MARGIN: f64 = 0.06;
 const TURNS: u32 = 6;
 /// The sine of the greatest angle by which such a camera looks up or down.
 const STEEPEST: f64 = 0.9;
+/// Width of the film that focal lengths are told for, in millimetres: that of small cameras since 1925, and of full-frame sensors.
+const FILM_WIDTH: f64 = 36.0;
 
 /// A camera as a scene writes it: given by `at` and `look_at`, or else turned to an angle and fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
@@ -29,6 +32,21 @@ pub struct CameraSpec {
     pub eye: Option<f64>,
     /// Horizontal angle of view; 0 for a parallel view.
     pub angle: Degrees,
+    /// Focal length in millimetres for a film 36 mm wide, in place of `angle`: 24 is wide, 50 as one sees, 200 brings near.
+    #[schemars(range(min = 1.0, max = 5000.0))]
+    pub length: Option<f64>,
+    /// Width of the lens' opening in scene units: what is nearer or farther than `focus` blurs, but in the exact look. A lens of
+    /// 50 mm at f/2 has 25 mm; 0 shows everything sharp.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub aperture: f64,
+    /// Distance along the view of what is sharp, in scene units; by default that of what it looks at.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e9))]
+    pub focus: Option<f64>,
+    /// Longer or shorter exposure in stops: each doubles the light, or halves it.
+    #[schemars(range(min = -20.0, max = 20.0))]
+    pub exposure: f64,
+    /// How light becomes a picture.
+    pub film: Film,
     /// Without `at`: share of extra room around what is fitted.
     #[schemars(range(min = 0.0, max = 10.0))]
     pub room: f64,
@@ -43,6 +61,11 @@ impl Default for CameraSpec {
             rise: Degrees(4.0),
             eye: None,
             angle: Degrees(30.0),
+            length: None,
+            aperture: 0.0,
+            focus: None,
+            exposure: 0.0,
+            film: Film::Soft,
             room: 0.0,
         }
     }
@@ -55,14 +78,20 @@ impl CameraSpec {
     /// [`CameraError`].
     pub fn check(&self) -> Result<(), CameraError> {
         match (self.at, self.look_at) {
-            (None, None) if self.eye.is_some() && self.angle.radians() <= 0.0 => Err(CameraError::FlatEye),
+            (None, None) if self.eye.is_some() && self.angle() <= 0.0 => Err(CameraError::FlatEye),
             (None, None) => Ok(()),
             (Some(_), None) => Err(CameraError::LooksNowhere),
             (None, Some(_)) => Err(CameraError::StandsNowhere),
             (Some(at), Some(look_at)) if at.0.truncate() == look_at.0.truncate() => Err(CameraError::Upright),
-            _ if self.angle.radians() <= 0.0 => Err(CameraError::NoAngle),
+            _ if self.angle() <= 0.0 => Err(CameraError::NoAngle),
             _ => Ok(()),
-        }
+        }?;
+        if self.aperture > 0.0 && self.angle() <= 0.0 { Err(CameraError::FlatLens) } else { Ok(()) }
+    }
+
+    /// Horizontal angle of view, in radians.
+    fn angle(&self) -> f64 {
+        self.length.map_or(self.angle.radians(), |length| 2.0 * libm::atan(FILM_WIDTH * 0.5 / length))
     }
 
     /// From the front, parallel: the view of flat scenes.
@@ -87,6 +116,9 @@ pub enum CameraError {
     /// A parallel view is from nowhere.
     #[error("a camera with `eye` needs an `angle` above 0")]
     FlatEye,
+    /// A parallel view has no lens.
+    #[error("a camera with `aperture` needs an `angle` above 0")]
+    FlatLens,
     /// A parallel view is fitted, not placed.
     #[error("a camera with `at` needs an `angle` above 0")]
     NoAngle,
@@ -103,6 +135,12 @@ pub struct Camera {
     pub projection: Projection,
     /// Width of the picture over its height.
     pub aspect: f64,
+    /// Its lens.
+    pub lens: Lens,
+    /// All light that comes to it is multiplied by this.
+    pub gain: f64,
+    /// Its film.
+    pub film: Film,
 }
 
 /// How the world falls into a picture.
@@ -135,8 +173,15 @@ pub struct Projected {
 
 impl Camera {
     /// A parallel view from the front, one unit wide.
-    pub const FRONT: Self =
-        Self { at: DVec3::NEG_Y, look_at: DVec3::ZERO, projection: Projection::Parallel { width: 1.0 }, aspect: 1.0 };
+    pub const FRONT: Self = Self {
+        at: DVec3::NEG_Y,
+        look_at: DVec3::ZERO,
+        projection: Projection::Parallel { width: 1.0 },
+        aspect: 1.0,
+        lens: Lens::PINHOLE,
+        gain: 1.0,
+        film: Film::Soft,
+    };
 
     /// The camera that `spec` describes, fitted to `balls` (centre, radius) where it has no place of its own.
     /// `aspect` is the picture's width over its height.
@@ -149,11 +194,19 @@ impl Camera {
         balls: impl Iterator<Item = (DVec3, f64)> + Clone,
     ) -> Result<Self, CameraError> {
         spec.check()?;
+        let placed = Self::placed(spec, aspect, balls);
+        let focus = spec.focus.unwrap_or((placed.look_at - placed.at).length());
+        let lens = Lens { aperture: spec.aperture, focus };
+        Ok(Self { lens, gain: libm::exp2(spec.exposure), film: spec.film, ..placed })
+    }
+
+    /// As [`Camera::new`], with a pinhole.
+    fn placed(spec: &CameraSpec, aspect: f64, balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> Self {
         if let (Some(at), Some(look_at)) = (spec.at, spec.look_at) {
-            let projection = Projection::Perspective { angle: spec.angle.radians() };
-            return Ok(Self { at: at.0, look_at: look_at.0, projection, aspect });
+            let projection = Projection::Perspective { angle: spec.angle() };
+            return Self { at: at.0, look_at: look_at.0, projection, aspect, ..Self::FRONT };
         }
-        let Some(eye) = spec.eye else { return Ok(Self::fitted(spec, aspect, balls)) };
+        let Some(eye) = spec.eye else { return Self::fitted(spec, aspect, balls) };
         // Where it stands and how far it looks up depend on each other.
         let mut rise = 0.0;
         let mut camera = Self::fitted(&CameraSpec { rise: Degrees(rise), ..*spec }, aspect, balls.clone());
@@ -162,12 +215,12 @@ impl Camera {
             rise = libm::asin(sine.clamp(-STEEPEST, STEEPEST)) * 180.0 / std::f64::consts::PI;
             camera = Self::fitted(&CameraSpec { rise: Degrees(rise), ..*spec }, aspect, balls.clone());
         }
-        Ok(camera)
+        camera
     }
 
     /// The camera that is turned as `spec` says, as near as all `balls` allow.
     fn fitted(spec: &CameraSpec, aspect: f64, balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> Self {
-        let angle = spec.angle.radians();
+        let angle = spec.angle();
         let (turn, rise) = (spec.turn.radians(), spec.rise.radians());
         let back = DVec3::new(libm::sin(turn) * libm::cos(rise), -libm::cos(turn) * libm::cos(rise), libm::sin(rise));
         let right = DVec3::new(libm::cos(turn), libm::sin(turn), 0.0);
@@ -195,6 +248,7 @@ impl Camera {
                 look_at,
                 projection: Projection::Parallel { width },
                 aspect,
+                ..Self::FRONT
             };
         }
         // A ball of radius r at (x, depth D - z) is seen whole when x + r / cos(h) <= (D - z) tan(h), for each half
@@ -207,7 +261,8 @@ impl Camera {
                 .map(|(x, tan)| p.dot(back) + (x.abs() + radius * libm::sqrt(1.0 + tan * tan)) / tan)
                 .fold(distance, f64::max)
         });
-        Self { at: look_at + back * distance, look_at, projection: Projection::Perspective { angle }, aspect }
+        let projection = Projection::Perspective { angle };
+        Self { at: look_at + back * distance, look_at, projection, aspect, ..Self::FRONT }
     }
 
     /// Unit vectors to the right, up and forwards of the picture.
@@ -248,6 +303,20 @@ mod tests {
         }
         let flat = CameraSpec { eye: Some(1.0), angle: Degrees(0.0), ..CameraSpec::default() };
         assert_eq!(flat.check(), Err(CameraError::FlatEye));
+        let flat = CameraSpec { aperture: 0.1, ..CameraSpec::front() };
+        assert_eq!(flat.check(), Err(CameraError::FlatLens));
+    }
+
+    #[test]
+    fn a_lens_has_an_angle_and_what_is_sharp() {
+        let ball = [(DVec3::new(0.0, 0.0, 1.0), 1.0)];
+        let camera = |spec: &CameraSpec| Camera::new(spec, 1.0, ball.into_iter()).unwrap();
+        // 36 mm at 18 mm: a right angle.
+        let wide = camera(&CameraSpec { length: Some(18.0), aperture: 0.1, ..CameraSpec::default() });
+        let Projection::Perspective { angle } = wide.projection else { panic!("a parallel view") };
+        assert!((angle - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+        assert_eq!(wide.lens, Lens { aperture: 0.1, focus: (wide.at - wide.look_at).length() });
+        assert_eq!(camera(&CameraSpec { focus: Some(3.0), ..CameraSpec::default() }).lens.focus, 3.0);
     }
 
     #[test]

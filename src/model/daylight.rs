@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use hw_skymodel::rgb::{SkyParams, SkyState};
 
+use super::clouds::Clouds;
 use super::{DaylightSpec, Dome, Light, Sky};
 use crate::math::{Colour, DVec3, GOLDEN_ANGLE, from_height, power, solar_direction};
 use crate::raster::Panorama;
@@ -37,8 +38,15 @@ const ALBEDO: f32 = 0.2;
 /// Below this elevation, in radians, the sky passes into one colour all around: the last degrees of the model are a white line,
 /// which a ground that fades before the horizon would show whole.
 const HAZE: f64 = 0.07;
-/// Rows of the sky's picture.
+/// Rows of the sky's picture, and with clouds.
 const ROWS: u32 = 192;
+const CLOUDY_ROWS: u32 = 768;
+/// What clouds scatter of the light that falls on them.
+const WHITENESS: f64 = 0.8;
+/// Clouds fade into the haze of the horizon over so many times its height.
+const DISTANT: f64 = 3.0;
+/// Illuminance under an overcast sky, in klx: this, and so much more by the sine of the sun's elevation (IES 1984).
+const OVERCAST: [f64; 2] = [0.3, 21.0];
 
 /// Sun and sky of a day and an hour.
 #[derive(Clone, Debug)]
@@ -50,6 +58,9 @@ pub struct Daylight {
     sun: [f64; 3],
     /// What of the sky's light reaches a level surface.
     level: [f64; 3],
+    /// Clouds, if there are any, and what they are seen by: the sun where nothing is before it, and the clear sky's light on a level
+    /// surface.
+    clouds: Option<(Clouds, [[f64; 3]; 2])>,
     /// Brightness of what is shown, by that of the model.
     scale: f64,
 }
@@ -70,16 +81,23 @@ impl Daylight {
         let (numbers, radiances) = state.map_err(|_| DaylightError::NoSky)?.raw();
         let own = |c: usize| (std::array::from_fn(|i| steady(numbers[9 * c + i])), steady(radiances[c]));
         let sun = sunlight(towards.z, spec.turbidity);
-        let mut daylight = Self { towards, channels: [0, 1, 2].map(own), sun, level: [0.0; 3], scale: 1.0 };
+        let mut daylight =
+            Self { towards, channels: [0, 1, 2].map(own), sun, level: [0.0; 3], clouds: None, scale: 1.0 };
         daylight.level = daylight.level();
-        daylight.scale = spec.exposure * WHITE * PI / (luminance(sun) + luminance(daylight.level));
+        if spec.clouds > 0.0 {
+            let clouds = Clouds::new(spec.clouds, spec.day, spec.hour, towards);
+            daylight.clouds = Some((clouds, [sun, daylight.level]));
+            daylight.sun = sun.map(|x| x * clouds.sun());
+            daylight.level = daylight.level();
+        }
+        daylight.scale = spec.exposure * WHITE * PI / (luminance(daylight.sun) + luminance(daylight.level));
         Ok(daylight)
     }
 
     /// The sun.
     #[must_use]
     pub fn sun(&self) -> Light {
-        let colour = Colour(self.sun.map(|x| x * self.scale / PI));
+        let colour = Colour(self.sun).times(self.scale / PI);
         Light::Sun { towards: self.towards, colour, size: SIZE, shadow: true }
     }
 
@@ -87,7 +105,7 @@ impl Daylight {
     #[must_use]
     pub fn fill(&self) -> Light {
         let towards = DVec3::new(-self.towards.x, -self.towards.y, 0.7).normalize();
-        let colour = Colour(self.level.map(|x| x * self.scale / PI));
+        let colour = Colour(self.level).times(self.scale / PI);
         Light::Sun { towards, colour, size: 0.0, shadow: false }
     }
 
@@ -101,7 +119,8 @@ impl Daylight {
             let light = seen(TAU * f64::from(x) / f64::from(ROWS), HAZE);
             (0..3).for_each(|c| haze[c] += light[c] / f64::from(ROWS));
         }
-        let picture = Panorama::painted(ROWS, |turn, rise| {
+        let rows = if self.clouds.is_some() { CLOUDY_ROWS } else { ROWS };
+        let picture = Panorama::painted(rows, |turn, rise| {
             let clear = (rise / HAZE).clamp(0.0, 1.0);
             let light = seen(turn, rise.max(HAZE));
             [0, 1, 2].map(|c| (haze[c] + (light[c] - haze[c]) * clear) as f32)
@@ -112,8 +131,26 @@ impl Daylight {
         Sky::Picture { picture: Arc::new(picture), turn: 0.0, strength, light }
     }
 
-    /// Radiance from a direction of length 1 above the horizon (Hosek and Wilkie 2012, equations 8 and 9).
+    /// Radiance from a direction of length 1 above the horizon.
     fn radiance(&self, direction: DVec3) -> [f64; 3] {
+        let clear = self.clear(direction);
+        let Some((clouds, [sun, level])) = self.clouds else { return clear };
+        let seen = clouds.seen(direction);
+        let cover = seen.cover * (direction.z / (DISTANT * HAZE)).clamp(0.0, 1.0);
+        let closed = clouds.closed();
+        // One sheet is three times as bright overhead as at the horizon (Moon and Spencer 1942).
+        let [least, more] = OVERCAST;
+        let zenith = (least + more * self.towards.z) / 0.683 * 9.0 / (7.0 * PI);
+        let sheet = zenith * (1.0 + 2.0 * direction.z.max(0.0)) / 3.0 * (0.8 + 0.4 * seen.lit);
+        [0, 1, 2].map(|c| {
+            let cloud = WHITENESS / PI * (sun[c] * seen.lit + level[c]);
+            let cloud = cloud + (sheet - cloud) * closed;
+            clear[c] + (cloud - clear[c]) * cover.max(closed * closed)
+        })
+    }
+
+    /// Radiance of the clear sky (Hosek and Wilkie 2012, equations 8 and 9).
+    fn clear(&self, direction: DVec3) -> [f64; 3] {
         let cos_theta = direction.z.max(0.0);
         let cos_gamma = direction.dot(self.towards).clamp(-1.0, 1.0);
         let gamma = libm::acos(cos_gamma);
@@ -180,6 +217,7 @@ mod tests {
             hour: 12.0,
             north: Degrees(0.0),
             turbidity: 2.0,
+            clouds: 0.0,
             exposure: 1.0,
         }
     }

@@ -97,12 +97,14 @@ impl Limbs {
     fn renumbered(&self, is_kept: &[bool], mut segments: Vec<[u32; 2]>) -> Self {
         let mut names = vec![0; self.balls.len()];
         let mut balls = Vec::new();
+        let kept = self.beyond.iter().zip(is_kept).filter(|(_, is_kept)| **is_kept);
+        let beyond = kept.map(|(&beyond, _)| beyond).collect();
         for (i, ball) in self.balls.iter().enumerate().filter(|&(i, _)| is_kept[i]) {
             names[i] = balls.len() as u32;
             balls.push(*ball);
         }
         segments.iter_mut().flatten().for_each(|i| *i = names[*i as usize]);
-        Self { balls, segments, ..*self }
+        Self { balls, segments, beyond, ..*self }
     }
 }
 

@@ -56,16 +56,16 @@ impl Dome {
             .map(|i| {
                 let z = 1.0 - (2.0 * f64::from(i) + 1.0) / n;
                 let direction = from_height(z, GOLDEN_ANGLE * f64::from(i));
-                let Colour(light) = match &self.sky {
+                let light = match &self.sky {
                     // A picture may change within a light's share of the sky.
                     Sky::Picture { picture, turn, strength, .. } if z >= 0.0 => {
                         let about = super::Instance { at: DVec3::ZERO, turn: *turn, scale: 1.0 }.unturned(direction);
                         let most = Self::BRIGHTEST / strength.max(1e-9);
-                        Colour(picture.mean(about, 1.0 - 2.0 / n, most).map(|x| x * strength * self.strength()))
+                        Colour(picture.mean(about, 1.0 - 2.0 / n, most)).times(strength * self.strength())
                     }
                     _ => self.light(direction),
                 };
-                (direction, Colour(light.map(|x| x * share)))
+                (direction, light.times(share))
             })
             .collect()
     }

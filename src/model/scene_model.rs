@@ -58,8 +58,7 @@ impl Model {
     pub fn hazed(&self, from: DVec3, way: DVec3, far: f64, colour: Colour) -> Colour {
         let Some(air) = &self.air else { return colour };
         let left = air.through(from, way, far);
-        let (Colour(own), Colour(haze)) = (colour, self.sky.at_horizon());
-        Colour([0, 1, 2].map(|i| haze[i] + (own[i] - haze[i]) * left))
+        self.sky.at_horizon().mixed(colour, left)
     }
 
     /// Bytes of its objects in memory.

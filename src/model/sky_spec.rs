@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use crate::math::{Colour, Degrees};
 
-/// What is behind everything, as a scene writes it: one colour, a gradient, a picture, or a clear day.
+/// What is behind everything, as a scene writes it: one colour, a gradient, a picture, or a day.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SkySpec {
@@ -22,11 +22,12 @@ pub struct SkySpec {
     /// The picture's light times this.
     #[schemars(range(min = 0.0, max = 1000.0))]
     pub strength: Option<f64>,
-    /// The sky of a clear day, which has its sun: a scene without lights of its own gets that too.
+    /// The sky of a day, which has its sun: a scene without lights of its own gets that too.
     pub daylight: Option<DaylightSpec>,
 }
 
-/// A clear day: where the sun stands, and how hazy the air is. The sky is that of Hosek and Wilkie 2012.
+/// A day: where the sun stands, how hazy the air is, and how cloudy. The clear sky is that of Hosek and Wilkie 2012, the overcast one
+/// that of Moon and Spencer 1942.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DaylightSpec {
@@ -45,6 +46,10 @@ pub struct DaylightSpec {
     #[serde(default = "turbidity")]
     #[schemars(range(min = 1.0, max = 10.0))]
     pub turbidity: f64,
+    /// Share of the sky that clouds cover: 0.3 is a fair day, 1 overcast. They move with day and hour.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub clouds: f64,
     /// Light times this, as a longer exposure takes more of it.
     #[serde(default = "exposure")]
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]

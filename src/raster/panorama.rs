@@ -1,5 +1,7 @@
 //! Environment maps.
 
+use rayon::prelude::*;
+
 use super::{Channel, Layers};
 use crate::math::DVec3;
 
@@ -23,10 +25,10 @@ impl Panorama {
     /// A picture of `rows` rows, at least one, and twice as many columns: the light from where each pixel's middle is, by its angle
     /// from +x about the vertical and by its elevation, in radians.
     #[must_use]
-    pub fn painted(rows: u32, light: impl Fn(f64, f64) -> [f32; 3]) -> Self {
+    pub fn painted(rows: u32, light: impl Fn(f64, f64) -> [f32; 3] + Sync) -> Self {
         let (width, height) = (2 * rows.max(1), rows.max(1));
         let pixel = |i: u32| light(turn(i % width, width), rise(i / width, height));
-        Self { width, height, pixels: (0..width * height).map(pixel).collect() }
+        Self { width, height, pixels: (0..width * height).into_par_iter().map(pixel).collect() }
     }
 
     /// Pixels in a row, and rows.

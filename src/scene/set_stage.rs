@@ -13,7 +13,7 @@ const PLACE: [&str; 6] = ["air", "background", "ground", "light", "look", "sky"]
 const LENGTHS: [(&str, &[&str]); 4] = [
     ("air", &["clear", "height"]),
     ("background", &["apart", "from", "groves", "to"]),
-    ("camera", &["eye"]),
+    ("camera", &["aperture", "eye", "focus"]),
     ("ground", &["from", "height", "reach", "size"]),
 ];
 /// What within them is in lengths of something else.

@@ -112,7 +112,9 @@ mod tests {
             .iter()
             .map(|t| {
                 let p = t.map(|i| mesh.points[i as usize]);
-                (p[1] - p[0]).cross(p[2] - p[0]).length() * 0.5
+                let across = (p[1] - p[0]).cross(p[2] - p[0]);
+                assert!(across.z > 0.0);
+                across.length() * 0.5
             })
             .sum();
         assert!((area - 16.0 / 64.0).abs() < 1e-9, "{area}");

@@ -41,8 +41,7 @@ impl LeafTints {
             let last = self.colours.len().saturating_sub(1);
             let at = t * last as f64;
             let first = (libm::floor(at) as usize).min(last.saturating_sub(1));
-            let (Colour(a), Colour(b)) = (self.colours[first], self.colours[(first + 1).min(last)]);
-            Colour([0, 1, 2].map(|c| a[c] + (b[c] - a[c]) * (at - first as f64)))
+            self.colours[first].mixed(self.colours[(first + 1).min(last)], at - first as f64)
         };
         let green = (0..GROUPS).map(|group| between(f64::from(group) / f64::from(GROUPS - 1)));
         green.chain((self.withered > 0.0).then_some(self.withered_colour)).collect()

@@ -31,6 +31,7 @@ fn of_level(limbs: &Limbs, level: u16) -> Limbs {
     let mut put = |own: &mut Limbs, i: u32| {
         *renamed.entry(i).or_insert_with(|| {
             own.balls.push(limbs.balls[i as usize]);
+            own.beyond.extend(limbs.beyond.get(i as usize));
             own.balls.len() as u32 - 1
         })
     };

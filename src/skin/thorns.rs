@@ -70,7 +70,7 @@ impl ThornsSpec {
         let mut passed: f64 = random.random::<f64>() * each;
         let mut turn: f64 = 0.0;
         for &[a, b] in &limbs.segments {
-            let area = area([a, b]);
+            let (area, end) = (area([a, b]), b);
             let (a, b) = (limbs.balls[a as usize], limbs.balls[b as usize]);
             let along = b.centre - a.centre;
             let Some(way) = along.try_normalize() else { continue };
@@ -95,6 +95,7 @@ impl ThornsSpec {
                     ..b
                 };
                 let from = thorns.balls.len() as u32;
+                thorns.beyond.extend(limbs.beyond.get(end as usize).into_iter().flat_map(|&beyond| [beyond; 2]));
                 thorns.balls.extend([ball(foot, self.radius * size), ball(tip, self.radius * size * POINT)]);
                 thorns.segments.push([from, from + 1]);
             }

@@ -1,5 +1,6 @@
 //! Camera rays.
 
+use super::sampling::disc;
 use super::world::{Within, World};
 use crate::bvh::Ray;
 use crate::math::DVec3;
@@ -30,6 +31,18 @@ impl Eye {
             Projection::Parallel { width } => width,
         };
         Self { camera, frame: camera.frame(), size, scale, within }
+    }
+
+    /// The ray through a point of the picture in pixel coordinates (`reference/povray.md`), and through the point of the lens that
+    /// `u` selects (Cook et al. 1984).
+    pub fn ray_through_lens(&self, x: f64, y: f64, u: [f64; 2]) -> Ray {
+        let ray = self.ray(x, y);
+        let lens = self.camera.lens;
+        let [right, up, forwards] = self.frame;
+        let sharp = ray.origin + ray.direction * (lens.focus / ray.direction.dot(forwards));
+        let (across, upwards) = disc(u[0], u[1]);
+        let origin = ray.origin + (right * across + up * upwards) * (lens.aperture * 0.5);
+        Ray::new(origin, (sharp - origin).normalize())
     }
 
     /// The ray through a point of the picture in pixel coordinates (`reference/povray.md`).

@@ -34,11 +34,14 @@ pub fn render(world: &World<'_>, view: &RenderSettings, progress: &Progress) -> 
     let wide = RenderSettings { crop: [x, y, right - x, bottom - y], ..*view };
     let Traced { mut picture, faces, guides } = trace_tiles(world, &wide, progress)?;
     match view.look {
-        Look::Exact => return Ok(picture),
+        Look::Exact => {}
         Look::Studio => picture.pixels = smooth(picture.width, &picture.pixels, &faces),
         Look::Natural => picture.pixels = denoise(picture.width, &picture.pixels, &guides),
     }
-    Ok(picture.cut([left - x, top - y, width, height]))
+    let mut shown = picture.cut([left - x, top - y, width, height]);
+    let gain = world.model.camera.gain as f32;
+    shown.pixels.iter_mut().for_each(|[r, g, b, _]| [r, g, b].into_iter().for_each(|c| *c *= gain));
+    Ok(shown)
 }
 
 /// A picture, and what guides the filter of its look: in the studio look the face of each pixel where all its samples hit one face

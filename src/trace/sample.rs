@@ -3,7 +3,7 @@
 use super::denoise::Guide;
 use super::eye::Eye;
 use super::film::Sample;
-use super::sampling::{DIMENSIONS, numbers};
+use super::sampling::{DIMENSIONS, numbers, on_lens};
 use super::settings::RenderSettings;
 use super::world::World;
 use crate::bvh::Ray;
@@ -12,6 +12,8 @@ use crate::model::Look;
 
 /// Samples after which a pixel of background only is finished, and after so many more of which it is asked whether it needs others.
 const FIRST: usize = 4;
+/// As many with a lens.
+const LENS: usize = 16;
 /// A pixel of the natural look is finished where the standard error of what it shows is below this, over the square root of the
 /// number of samples that it may have: with 16, three of 255 in the midst of the scale.
 const NOISE: f32 = 0.02;
@@ -19,17 +21,15 @@ const NOISE: f32 = 0.02;
 /// Adds the samples of a pixel.
 pub(super) fn sample(world: &World<'_>, view: &RenderSettings, eye: &Eye, x: u32, y: u32, samples: &mut Vec<Sample>) {
     let (px, py) = (f64::from(x), f64::from(y));
-    let take = |[dx, dy]: [f64; 2], u: &[f64; DIMENSIONS], number: u64| {
-        trace(world, view, eye, &eye.ray(px + dx, py + dy), u, number)
-    };
+    let take = |ray: &Ray, u: &[f64; DIMENSIONS], number: u64| trace(world, view, eye, ray, u, number);
     if view.look == Look::Exact {
-        samples.push(take([0.5; 2], &[0.0; DIMENSIONS], 0));
+        let through = |[dx, dy]: [f64; 2]| take(&eye.ray(px + dx, py + dy), &[0.0; DIMENSIONS], 0);
+        samples.push(through([0.5; 2]));
         let side = libm::round(libm::sqrt(f64::from(view.samples)));
         if side > 1.0 {
             for j in 0..side as u32 {
                 for i in 0..side as u32 {
-                    let place = [i, j].map(|k| (f64::from(k) + 0.5) / side);
-                    samples.push(take(place, &[0.0; DIMENSIONS], 0));
+                    samples.push(through([i, j].map(|k| (f64::from(k) + 0.5) / side)));
                 }
             }
         }
@@ -37,25 +37,30 @@ pub(super) fn sample(world: &World<'_>, view: &RenderSettings, eye: &Eye, x: u32
     }
     let pixel = u64::from(y) * u64::from(view.size[0]) + u64::from(x);
     for (n, u) in (0..).zip(numbers(x, y, view.samples)) {
-        let place = if view.samples == 1 { [0.5; 2] } else { [u[0], u[1]] };
-        samples.push(take(place, &u, pixel * u64::from(view.samples) + n));
-        if samples.len().is_multiple_of(FIRST) && is_finished(view, samples) {
+        let [dx, dy] = if view.samples == 1 { [0.5; 2] } else { [u[0], u[1]] };
+        let ray = match eye.camera.lens.is_pinhole() {
+            true => eye.ray(px + dx, py + dy),
+            false => eye.ray_through_lens(px + dx, py + dy, on_lens(x, y, n)),
+        };
+        samples.push(take(&ray, &u, pixel * u64::from(view.samples) + n));
+        if samples.len().is_multiple_of(FIRST) && is_finished(view, eye, samples) {
             return;
         }
     }
 }
 
 /// Does a pixel need no more samples?
-fn is_finished(view: &RenderSettings, samples: &[Sample]) -> bool {
+fn is_finished(view: &RenderSettings, eye: &Eye, samples: &[Sample]) -> bool {
     let is_first = samples.len() == FIRST;
     if samples.iter().all(|s| s.object == 0) {
-        return is_first;
+        // What is blurred may cover little of a pixel.
+        return if eye.camera.lens.is_pinhole() { is_first } else { samples.len() >= LENS };
     }
     if view.look != Look::Natural || is_first {
         return false;
     }
     let guide = Guide::of(samples);
-    guide.error() < NOISE / (view.samples as f32).sqrt()
+    guide.error() * (eye.camera.gain as f32) < NOISE / (view.samples as f32).sqrt()
 }
 
 /// The sample along a camera ray, the `number`th of the picture; `u` are its random numbers.
@@ -89,12 +94,9 @@ fn trace(world: &World<'_>, view: &RenderSettings, eye: &Eye, ray: &Ray, u: &[f6
         Some(ground) if surface.object.is_none() => ground.share(surface.point),
         _ => 1.0,
     };
-    let Colour(behind) = if view.transparent { Colour([0.0; 3]) } else { world.model.sky.at_horizon() };
-    let faded = |colour: [f64; 3]| {
-        // The horizon has the colour of the haze.
-        let Colour(shown) = hazed(surface.t, Colour(colour));
-        [0, 1, 2].map(|i| shown[i] * share + behind[i] * (1.0 - share))
-    };
+    let behind = if view.transparent { Colour([0.0; 3]) } else { world.model.sky.at_horizon() };
+    // The horizon has the colour of the haze.
+    let faded = |colour: [f64; 3]| behind.mixed(hazed(surface.t, Colour(colour)), share).0;
     let (_, pigment) = world.material(&surface);
     Sample {
         colour: faded(lit),

@@ -19,6 +19,16 @@ pub(super) fn numbers(x: u32, y: u32, count: u32) -> impl Iterator<Item = [f64; 
     (0..count).map(move |n| STEPS.map(|step| share(first.wrapping_add(n).wrapping_mul(step))))
 }
 
+/// Increments of the additive recurrence R2 (Roberts 2018): powers of the inverse of the root of x^3 = x + 1.
+const LENS_STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
+
+/// The point of the lens, as two numbers from 0 to 1, of the `n`th sample of a pixel.
+pub(super) fn on_lens(x: u32, y: u32, n: u64) -> [f64; 2] {
+    let pixel = name_of(u64::from(x), u64::from(y));
+    let first = [pixel as u32, (pixel >> 32) as u32].map(share);
+    [0, 1].map(|i| libm::fmod(first[i] + n as f64 * LENS_STEPS[i], 1.0))
+}
+
 /// Five numbers, 0 to 1, for the path of the `sample`th sample of a picture after so many bounces: at random, since few
 /// dimensions can be well distributed.
 pub(super) fn further(sample: u64, bounce: usize) -> [f64; 5] {
@@ -58,7 +68,7 @@ fn orthonormal_pair(n: DVec3) -> [DVec3; 2] {
 }
 
 /// A uniformly distributed point of the unit disc from two uniform numbers.
-fn disc(u: f64, v: f64) -> (f64, f64) {
+pub(super) fn disc(u: f64, v: f64) -> (f64, f64) {
     let (r, turn) = (libm::sqrt(u), v * std::f64::consts::TAU);
     (r * libm::cos(turn), r * libm::sin(turn))
 }

@@ -21,7 +21,7 @@ impl World<'_> {
         let mut colour = pigment.map(|c| c * own);
         for light in &self.model.lights {
             let (towards, far, shadow) = towards(light, surface.point);
-            if !material.shows(surface.turned.dot(towards)) {
+            if !surface.faces(towards, surface.turned, material) {
                 continue;
             }
             let to_light = Ray { origin: surface.point, direction: towards, near: SHADOW, far };
@@ -75,7 +75,7 @@ impl World<'_> {
                 towards = cone(towards, size * 0.5, u[0], u[1]);
             }
             let facing = surface.normal.dot(towards);
-            if !material.shows(facing) {
+            if !surface.faces(towards, surface.normal, material) {
                 continue;
             }
             let origin = self.beside(surface, facing);
@@ -114,7 +114,21 @@ impl World<'_> {
             (None, Some(ground)) => &ground.material,
             (None, None) => unreachable!("a surface is an object's or the ground's"),
         };
-        (material, material.blend(surface.pattern).0)
+        let colour = material.blend(surface.pattern);
+        let Colour(shown) = match material.tips {
+            Some(tips) if surface.tip > 0 => tips.over(material.mean_colour(), surface.tip),
+            _ if surface.is_below && material.paler > 0.0 => material.below(colour),
+            _ => colour,
+        };
+        (material, shown)
+    }
+}
+
+impl SurfaceHit {
+    /// Does it show light from this direction, being bumpy as `normal` has it? Light from behind a limb does not come through it.
+    fn faces(&self, towards: DVec3, normal: DVec3, material: &Material) -> bool {
+        let facing = normal.dot(towards);
+        material.shows(facing) && facing * self.face.dot(towards) >= 0.0
     }
 }
 

@@ -4,7 +4,7 @@ use crate::bvh::{Boxes, Cones, Entry, Hit, Ray, RoundCone, Triangle, Triangles};
 use crate::geom::Bounds;
 use crate::math::{DMat3, DVec3};
 use crate::model::pattern::{Expr, Figure};
-use crate::model::{Body, Dome, Instance, LimbFrame, Limbs, Mesh, Model, Object, Pattern, Pose, limb_frames};
+use crate::model::{Body, Dome, Instance, LimbFrame, Limbs, Mesh, Model, Object, Pattern, Pose, Tips, limb_frames};
 
 /// Rays from surfaces start this far off them, as a share of the world's size: more than single precision loses.
 const OFF: f64 = 2e-5;
@@ -40,15 +40,13 @@ struct LimbShape<'a> {
     /// Balls that no segment joins.
     lone: Vec<u32>,
     pattern: Option<Laid>,
+    tips: Option<Tips>,
 }
 
 /// A pattern laid along limbs.
 struct Laid {
+    pattern: Pattern,
     share: Expr,
-    size: f64,
-    /// Thinner limbs show the mean.
-    least_radius: f64,
-    mean: f64,
     /// The axes of the limb at each ball.
     frames: Vec<LimbFrame>,
 }
@@ -121,6 +119,8 @@ pub struct SurfaceHit {
     pub point: DVec3,
     /// Unit normal, towards where the ray came from.
     pub normal: DVec3,
+    /// The normal of a limb without the relief of its pattern, zero for all else.
+    pub face: DVec3,
     /// As POV-Ray has it: the normal of a smooth mesh is turned to where the ray came from, though its triangle may face there.
     pub turned: DVec3,
     /// The object, or `None` for the ground.
@@ -133,6 +133,10 @@ pub struct SurfaceHit {
     pub level: u16,
     /// The share of the material's pattern.
     pub pattern: f64,
+    /// The steps of the material's tips.
+    pub tip: u8,
+    /// Is it the lower side of a triangle?
+    pub is_below: bool,
     /// Seen from within a solid, which no light reaches.
     pub is_inside: bool,
 }
@@ -145,9 +149,9 @@ pub(super) struct Within {
 }
 
 impl<'a> LimbShape<'a> {
-    fn new(limbs: &'a Limbs, pattern: Option<Laid>) -> Self {
+    fn new(limbs: &'a Limbs, pattern: Option<Laid>, tips: Option<Tips>) -> Self {
         let empty = Cones::new(0, |_| unreachable!("there is none"));
-        let mut shape = Self { limbs, cones: empty, lone: limbs.lone(), pattern };
+        let mut shape = Self { limbs, cones: empty, lone: limbs.lone(), pattern, tips };
         shape.cones = Cones::new(shape.count(), |i| shape.cone(i as u32).0);
         shape
     }
@@ -166,13 +170,36 @@ impl<'a> LimbShape<'a> {
         (RoundCone { a: from.centre, ra: from.radius, b: to.centre, rb: to.radius }, [a, b])
     }
 
-    /// The share of the pattern at `p`, on the limb of a ball.
-    fn share(&self, ball: u32, p: DVec3) -> f64 {
-        let Some(laid) = &self.pattern else { return 0.0 };
-        if self.limbs.balls[ball as usize].radius < laid.least_radius {
-            return laid.mean;
+    /// The share of the pattern at `p`, on the limb of a ball, and which way it rises there, by how much.
+    fn pattern(&self, ball: u32, p: DVec3) -> (f64, DVec3) {
+        let Some(laid) = &self.pattern else { return (0.0, DVec3::ZERO) };
+        laid.at(self.limbs.balls[ball as usize].radius, &laid.frames[ball as usize], p)
+    }
+}
+
+/// Over this, in units of its size, the slope of a pattern is taken.
+const STEP: f64 = 0.02;
+
+impl Laid {
+    /// The pattern's share on a limb of this radius, and the slope of its height.
+    fn at(&self, radius: f64, frame: &LimbFrame, p: DVec3) -> (f64, DVec3) {
+        let figure = self.pattern.figure();
+        let (mean, clarity) = (figure.mean(), figure.clarity(radius));
+        if clarity == 0.0 {
+            return (mean, DVec3::ZERO);
         }
-        laid.share.at(laid.frames[ball as usize].local(p) / laid.size)
+        let at = frame.local(p) / figure.size();
+        let share = self.share.at(at);
+        let height = figure.height() * clarity;
+        let slope = match height == 0.0 {
+            true => DVec3::ZERO,
+            false => {
+                let rise = |axis: DVec3| (self.share.at(at + axis * STEP) - share) / STEP;
+                let [x, y, z] = frame.axes;
+                (x * rise(DVec3::X) + y * rise(DVec3::Y) + z * rise(DVec3::Z)) * height
+            }
+        };
+        (mean + (share - mean) * clarity, slope)
     }
 }
 
@@ -180,17 +207,12 @@ impl<'a> ObjectShape<'a> {
     fn new(object: &'a Object, model: &Model) -> Self {
         match &object.body {
             Body::Limbs(limbs) => {
-                let pattern = model.materials[object.material].1.pattern.map(|pattern| {
-                    let figure = pattern.figure();
-                    Laid {
-                        share: figure.share(),
-                        size: figure.size(),
-                        least_radius: figure.least_radius(),
-                        mean: figure.mean(),
-                        frames: limb_frames(limbs),
-                    }
+                let pattern = model.materials[object.material].1.pattern.map(|pattern| Laid {
+                    pattern,
+                    share: pattern.figure().share(),
+                    frames: limb_frames(limbs),
                 });
-                Self::Limbs(LimbShape::new(limbs, pattern))
+                Self::Limbs(LimbShape::new(limbs, pattern, model.materials[object.material].1.tips))
             }
             Body::Mesh(mesh) | Body::Posed(mesh, _) => {
                 let pattern = model.materials[object.material].1.pattern;
@@ -404,12 +426,15 @@ impl<'a> World<'a> {
             t,
             point,
             normal,
+            face: DVec3::ZERO,
             turned: normal,
             object: None,
             branch: 0,
             cost: 0.0,
             level: 0,
+            tip: 0,
             pattern: self.ground.as_ref().map_or(0.0, |pattern| pattern.at(point)),
+            is_below: false,
             is_inside: false,
         })
     }
@@ -432,18 +457,25 @@ impl<'a> World<'a> {
         };
         let [a, b] = balls.map(|i| &shape.limbs.balls[i as usize]);
         let at = if share > 0.0 { 1 } else { 0 };
-        let pattern = shape.share(balls[at], own.at(t / scale));
-        let normal = against(ray.direction, place.normal(normal));
+        let (pattern, slope) = shape.pattern(balls[at], own.at(t / scale));
+        let flat = against(ray.direction, place.normal(normal));
+        // What is not the limb's own inside, seen from within.
+        let outwards = if flat.dot(place.normal(normal)) > 0.0 { 1.0 } else { -1.0 };
+        let rough = place.normal(normal - (slope - normal * slope.dot(normal)));
+        let normal = towards(ray.direction, flat, rough * outwards);
         SurfaceHit {
             t,
             point: ray.at(t),
             normal,
+            face: flat,
             turned: normal,
             object: Some(*index),
             branch: self.branches[*index as usize] + [a, b][at].branch,
             cost: a.cost + (b.cost - a.cost) * share,
             level: [a, b][at].level,
+            tip: shape.tips.map_or(0, |tips| tips.steps(shape.limbs, balls[at])),
             pattern,
+            is_below: false,
             is_inside: false,
         }
     }
@@ -478,16 +510,19 @@ impl<'a> World<'a> {
             t,
             point: ray.at(t),
             normal: towards(ray.direction, flat, normal),
+            face: DVec3::ZERO,
             turned: against(ray.direction, normal),
             object: Some(*index),
             branch: self.branches[*index as usize],
             cost: 0.0,
             level: 0,
+            tip: 0,
             // It has no limbs that a pattern could follow.
             pattern: match pattern {
                 Some(pattern) => pattern.at(own.at(t / scale)),
                 None => self.model.materials[object.material].1.pattern.map_or(0.0, |p| p.figure().mean()),
             },
+            is_below: flat.dot(ray.direction) > 0.0,
             is_inside: false,
         }
     }

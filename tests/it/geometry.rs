@@ -31,6 +31,7 @@ fn model(balls: Vec<Ball>, segments: Vec<[u32; 2]>) -> Model {
             look_at: DVec3::ZERO,
             projection: Projection::Perspective { angle: 0.8 },
             aspect: 1.0,
+            ..Camera::FRONT
         },
         lights: vec![Light::Sun {
             towards: DVec3::new(0.0, -0.6, 0.8),

@@ -16,6 +16,14 @@ pub struct Bark {
     /// Distance from fissure to fissure, in scene units; thinner limbs have none.
     #[schemars(range(min = 1e-6, max = 1e6))]
     pub size: f64,
+    /// How deep fissures are, in sizes.
+    #[serde(default = "depth")]
+    #[schemars(range(min = 0.0, max = 5.0))]
+    pub depth: f64,
+}
+
+fn depth() -> f64 {
+    0.15
 }
 
 /// Fissures are where this sum is near 0: nets drawn out along the limb.
@@ -43,6 +51,10 @@ impl Figure for Bark {
 
     fn least_radius(&self) -> f64 {
         self.size * 1.5
+    }
+
+    fn height(&self) -> f64 {
+        -self.depth
     }
 
     fn mean(&self) -> f64 {

@@ -46,6 +46,11 @@ impl Figure for Moss {
         0.0
     }
 
+    /// A cushion.
+    fn height(&self) -> f64 {
+        0.2
+    }
+
     fn mean(&self) -> f64 {
         0.0
     }
