@@ -43,7 +43,7 @@ const ROWS: u32 = 192;
 const CLOUDY_ROWS: u32 = 768;
 /// What clouds scatter of the light that falls on them.
 const WHITENESS: f64 = 0.8;
-/// Clouds fade into the haze of the horizon over so many times its height.
+/// Clouds come out of the haze of the horizon over so many times its height.
 const DISTANT: f64 = 3.0;
 /// Illuminance under an overcast sky, in klx: this, and so much more by the sine of the sun's elevation (IES 1984).
 const OVERCAST: [f64; 2] = [0.3, 21.0];
@@ -122,6 +122,9 @@ impl Daylight {
         let rows = if self.clouds.is_some() { CLOUDY_ROWS } else { ROWS };
         let picture = Panorama::painted(rows, |turn, rise| {
             let clear = (rise / HAZE).clamp(0.0, 1.0);
+            if clear == 0.0 {
+                return haze.map(|c| c as f32);
+            }
             let light = seen(turn, rise.max(HAZE));
             [0, 1, 2].map(|c| (haze[c] + (light[c] - haze[c]) * clear) as f32)
         });
@@ -136,7 +139,7 @@ impl Daylight {
         let clear = self.clear(direction);
         let Some((clouds, [sun, level])) = self.clouds else { return clear };
         let seen = clouds.seen(direction);
-        let cover = seen.cover * (direction.z / (DISTANT * HAZE)).clamp(0.0, 1.0);
+        let cover = seen.cover * ((direction.z - HAZE) / (DISTANT * HAZE)).clamp(0.0, 1.0);
         let closed = clouds.closed();
         // One sheet is three times as bright overhead as at the horizon (Moon and Spencer 1942).
         let [least, more] = OVERCAST;

@@ -12,6 +12,8 @@ pub struct Panorama {
     width: u32,
     height: u32,
     pixels: Vec<[f32; 3]>,
+    /// The mean light of the row above the horizon.
+    horizon: [f64; 3],
 }
 
 impl Panorama {
@@ -19,7 +21,14 @@ impl Panorama {
     #[must_use]
     pub fn new(width: u32, height: u32, pixels: Vec<[f32; 3]>) -> Option<Self> {
         let fits = u64::from(width) * u64::from(height) == pixels.len() as u64;
-        (fits && !pixels.is_empty()).then_some(Self { width, height, pixels })
+        (fits && !pixels.is_empty()).then(|| Self::of(width, height, pixels))
+    }
+
+    fn of(width: u32, height: u32, pixels: Vec<[f32; 3]>) -> Self {
+        let row = (height / 2).saturating_sub(1) as usize * width as usize;
+        let row = &pixels[row..row + width as usize];
+        let horizon = [0, 1, 2].map(|c| row.iter().map(|p| f64::from(p[c])).sum::<f64>() / row.len() as f64);
+        Self { width, height, pixels, horizon }
     }
 
     /// A picture of `rows` rows, at least one, and twice as many columns: the light from where each pixel's middle is, by its angle
@@ -28,7 +37,7 @@ impl Panorama {
     pub fn painted(rows: u32, light: impl Fn(f64, f64) -> [f32; 3] + Sync) -> Self {
         let (width, height) = (2 * rows.max(1), rows.max(1));
         let pixel = |i: u32| light(turn(i % width, width), rise(i / width, height));
-        Self { width, height, pixels: (0..width * height).into_par_iter().map(pixel).collect() }
+        Self::of(width, height, (0..width * height).into_par_iter().map(pixel).collect())
     }
 
     /// Pixels in a row, and rows.
@@ -74,9 +83,7 @@ impl Panorama {
     /// The mean light of the row above the horizon.
     #[must_use]
     pub fn horizon(&self) -> [f64; 3] {
-        let row = (self.height / 2).saturating_sub(1) as usize * self.width as usize;
-        let row = &self.pixels[row..row + self.width as usize];
-        [0, 1, 2].map(|c| row.iter().map(|p| f64::from(p[c])).sum::<f64>() / row.len() as f64)
+        self.horizon
     }
 
     /// The mean light over the spherical cap about the unit vector `about`, with `cos` the cosine of its half-angle; pixels are

@@ -9,12 +9,14 @@ mod denoise;
 mod eye;
 mod film;
 mod natural;
+mod posed;
 mod render;
 mod sample;
 mod sampling;
 mod settings;
 mod shade;
 mod smooth;
+mod standing;
 mod world;
 
 pub use film::{Data, Picture, RANKS, Ranks};

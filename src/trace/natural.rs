@@ -42,7 +42,7 @@ impl World<'_> {
                 }
                 share = share.map(|x| x / going);
             }
-            let next = if bounce < BOUNCES { self.closest(&onwards, &[]) } else { None };
+            let next = if bounce < BOUNCES { self.closest(&onwards, &[], false) } else { None };
             let is_open = next.is_none() && (bounce < BOUNCES || !self.is_blocked(&onwards));
             let Some(next) = next else {
                 if is_open {

@@ -66,7 +66,7 @@ fn is_finished(view: &RenderSettings, eye: &Eye, samples: &[Sample]) -> bool {
 /// The sample along a camera ray, the `number`th of the picture; `u` are its random numbers.
 fn trace(world: &World<'_>, view: &RenderSettings, eye: &Eye, ray: &Ray, u: &[f64; DIMENSIONS], number: u64) -> Sample {
     let hazed = |far: f64, colour: Colour| world.model.hazed(ray.origin, ray.direction, far, colour);
-    let Some(surface) = world.closest(ray, &eye.within) else {
+    let Some(surface) = world.closest(ray, &eye.within, true) else {
         let Colour(seen) = match view.transparent {
             true => Colour([0.0; 3]),
             false => hazed(f64::INFINITY, world.model.sky.colour(ray.direction)),

@@ -1,10 +1,12 @@
 //! A model in trees: what a ray meets.
 
+use super::posed::{self, PosedTree, PosedTriangle};
+use super::standing::Standing;
 use crate::bvh::{Boxes, Cones, Entry, Hit, Ray, RoundCone, Triangle, Triangles};
 use crate::geom::Bounds;
-use crate::math::{DMat3, DVec3};
+use crate::math::DVec3;
 use crate::model::pattern::{Expr, Figure};
-use crate::model::{Body, Dome, Instance, LimbFrame, Limbs, Mesh, Model, Object, Pattern, Pose, Tips, limb_frames};
+use crate::model::{Body, Dome, LimbFrame, Limbs, Mesh, Model, Object, Pattern, Tips, limb_frames};
 
 /// Rays from surfaces start this far off them, as a share of the world's size: more than single precision loses.
 const OFF: f64 = 2e-5;
@@ -19,6 +21,8 @@ pub struct World<'a> {
     /// Object and place of each box.
     instances: Vec<(u32, Standing)>,
     boxes: Boxes,
+    /// Leaves and what else is posed; not among the instances.
+    posed: PosedTree<'a>,
     /// The ground's pattern.
     ground: Option<Spread>,
     /// The first number of each object's branches among all.
@@ -65,48 +69,6 @@ impl Spread {
     /// Its share at a place, which exporters have with y up.
     fn at(&self, p: DVec3) -> f64 {
         self.share.at(DVec3::new(p.x, p.z, p.y) / self.size)
-    }
-}
-
-/// Where an object, or one posed mesh of it, is in the world.
-struct Standing {
-    /// Where its origin is.
-    at: DVec3,
-    /// Its axes' inverse: what turns directions in the world into its own.
-    inverse: DMat3,
-}
-
-impl Standing {
-    fn whole(instance: &Instance) -> Self {
-        let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| instance.unturned(axis) / instance.scale);
-        Self { at: instance.at, inverse: DMat3::from_cols(x, y, z) }
-    }
-
-    fn posed(instance: &Instance, pose: &Pose) -> Self {
-        let axes = [pose.axes.x_axis, pose.axes.y_axis, pose.axes.z_axis];
-        let [x, y, z] = axes.map(|axis| instance.turned(axis * instance.scale));
-        Self { at: instance.to_world(pose.at), inverse: DMat3::from_cols(x, y, z).inverse() }
-    }
-
-    fn to_world(&self, p: DVec3) -> DVec3 {
-        self.inverse.inverse() * p + self.at
-    }
-
-    fn to_own(&self, p: DVec3) -> DVec3 {
-        self.inverse * (p - self.at)
-    }
-
-    /// The ray in the object's own space, and how much longer distances along it are in the world.
-    fn ray(&self, ray: &Ray) -> (Ray, f64) {
-        let direction = self.inverse * ray.direction;
-        let length = direction.length();
-        let (origin, direction) = (self.to_own(ray.origin), direction / length);
-        (Ray { origin, direction, near: ray.near * length, far: ray.far * length }, 1.0 / length)
-    }
-
-    /// A unit normal in the world from one of the object's own.
-    fn normal(&self, normal: DVec3) -> DVec3 {
-        (self.inverse.transpose() * normal).normalize_or(DVec3::Z)
     }
 }
 
@@ -171,8 +133,11 @@ impl<'a> LimbShape<'a> {
     }
 
     /// The share of the pattern at `p`, on the limb of a ball, and which way it rises there, by how much.
-    fn pattern(&self, ball: u32, p: DVec3) -> (f64, DVec3) {
+    fn pattern(&self, ball: u32, p: DVec3, seen: bool) -> (f64, DVec3) {
         let Some(laid) = &self.pattern else { return (0.0, DVec3::ZERO) };
+        if !seen {
+            return (laid.pattern.figure().mean(), DVec3::ZERO);
+        }
         laid.at(self.limbs.balls[ball as usize].radius, &laid.frames[ball as usize], p)
     }
 }
@@ -274,11 +239,15 @@ impl<'a> World<'a> {
                 }
                 Body::Mesh(mesh) | Body::Posed(mesh, _) => Triangles::bytes_needed(mesh.triangles.len()),
             };
-            let poses = if let Body::Posed(_, poses) = &object.body { poses.len() } else { 1 };
+            let poses = match &object.body {
+                Body::Posed(..) if posed::is_in_tree(object) => 0,
+                Body::Posed(_, poses) => poses.len(),
+                Body::Limbs(_) | Body::Mesh(_) => 1,
+            };
             let places = poses * object.instances.len();
             shapes + places * size_of::<(u32, Standing)>() + Boxes::bytes_needed(places)
         };
-        model.objects.iter().map(|object| of(object) as u64).sum()
+        posed::bytes_needed(model) as u64 + model.objects.iter().map(|object| of(object) as u64).sum::<u64>()
     }
 
     /// Puts `model` into trees.
@@ -289,6 +258,7 @@ impl<'a> World<'a> {
         for (i, object) in (0..).zip(&model.objects) {
             for instance in &object.instances {
                 match &object.body {
+                    Body::Posed(..) if posed::is_in_tree(object) => {}
                     Body::Posed(_, poses) => {
                         instances.extend(poses.iter().map(|pose| (i, Standing::posed(instance, pose))));
                     }
@@ -319,7 +289,7 @@ impl<'a> World<'a> {
         let pattern = model.ground.as_ref().and_then(|ground| ground.material.pattern);
         let ground = pattern.map(|pattern| Spread::new(pattern.figure()));
         let (dome, boxes) = (Dome::new(model), Boxes::new(&boxes));
-        Self { model, dome, shapes, boxes, instances, ground, branches, off: reach * OFF }
+        Self { model, dome, shapes, boxes, instances, posed: PosedTree::new(model), ground, branches, off: reach * OFF }
     }
 
     /// The name of each branch as [`SurfaceHit::branch`] counts them: `object.limb`.
@@ -346,12 +316,17 @@ impl<'a> World<'a> {
         found
     }
 
-    /// The nearest thing on the ray, `within` being the solids that hold its origin.
-    pub(super) fn closest(&self, ray: &Ray, within: &[Within]) -> Option<SurfaceHit> {
+    /// The nearest thing on the ray, `within` being the solids that hold its origin. What is not `seen`, but lights what is, has its
+    /// pattern's mean.
+    pub(super) fn closest(&self, ray: &Ray, within: &[Within], seen: bool) -> Option<SurfaceHit> {
         let mut ray = *ray;
-        let ground = self.ground(&ray);
+        let ground = self.ground(&ray, seen);
         if let Some(surface) = &ground {
             ray.far = surface.t;
+        }
+        let leaf = self.posed.closest(&ray);
+        if let Some(hit) = &leaf {
+            ray.far = hit.t;
         }
         let mut best: Option<(u32, f64, u32)> = None;
         self.meet(&ray, &mut |instance, far| {
@@ -362,7 +337,11 @@ impl<'a> World<'a> {
             }
             best.map_or(far, |(_, t, _)| t.min(far))
         });
-        let mut surface = best.map_or(ground, |(instance, t, id)| Some(self.surface(&ray, instance, t, id)));
+        let mut surface = match (best, leaf) {
+            (Some((instance, t, id)), _) => Some(self.surface(&ray, instance, t, id, seen)),
+            (None, Some(hit)) => Some(self.on_leaf(&ray, hit.t, hit.id, seen)),
+            (None, None) => ground,
+        };
         for w in within {
             let (object, place) = &self.instances[w.instance as usize];
             let ObjectShape::Limbs(shape) = &self.shapes[*object as usize] else { continue };
@@ -371,29 +350,49 @@ impl<'a> World<'a> {
             if let Some(entry) = cone.inner(&own)
                 && surface.is_none_or(|s| entry.t * scale < s.t)
             {
-                let inner = self.on_cone(&ray, w.instance, entry.t * scale, Some(entry), shape, (&cone, balls));
+                let inner = self.on_cone(&ray, w.instance, entry.t * scale, (Some(entry), seen), shape, (&cone, balls));
                 surface = Some(SurfaceHit { is_inside: true, ..inner });
             }
         }
         surface
     }
 
+    /// The surface of a hit in the tree of posed meshes.
+    fn on_leaf(&self, ray: &Ray, t: f64, id: u32, seen: bool) -> SurfaceHit {
+        let PosedTriangle { object, instance, pose, triangle } = self.posed.triangle(id);
+        let ObjectShape::Mesh(mesh, _, pattern) = &self.shapes[object as usize] else {
+            unreachable!("what is posed is a mesh")
+        };
+        self.on_mesh(
+            ray,
+            (object, &Standing::posed(instance, pose)),
+            t,
+            triangle,
+            (mesh, pattern.as_ref().filter(|_| seen)),
+        )
+    }
+
     /// The surface of a hit.
-    fn surface(&self, ray: &Ray, instance: u32, t: f64, id: u32) -> SurfaceHit {
+    fn surface(&self, ray: &Ray, instance: u32, t: f64, id: u32, seen: bool) -> SurfaceHit {
         let (object, place) = &self.instances[instance as usize];
         match &self.shapes[*object as usize] {
-            ObjectShape::Mesh(mesh, _, pattern) => self.on_mesh(ray, instance, t, id, (mesh, pattern.as_ref())),
+            ObjectShape::Mesh(mesh, _, pattern) => {
+                self.on_mesh(ray, (*object, place), t, id, (mesh, pattern.as_ref().filter(|_| seen)))
+            }
             ObjectShape::Limbs(shape) => {
                 let (own, _) = place.ray(ray);
                 let (cone, balls) = shape.cone(id);
-                self.on_cone(ray, instance, t, cone.enter(&own), shape, (&cone, balls))
+                self.on_cone(ray, instance, t, (cone.enter(&own), seen), shape, (&cone, balls))
             }
         }
     }
 
     /// Does anything that casts shadows stand in the way?
     pub(super) fn is_blocked(&self, ray: &Ray) -> bool {
-        let mut met = false;
+        let mut met = self.posed.is_blocked(ray);
+        if met {
+            return true;
+        }
         self.meet(ray, &mut |instance, far| {
             let (object, place) = &self.instances[instance as usize];
             if !self.model.objects[*object as usize].shadow {
@@ -415,7 +414,7 @@ impl<'a> World<'a> {
         }
     }
 
-    fn ground(&self, ray: &Ray) -> Option<SurfaceHit> {
+    fn ground(&self, ray: &Ray, seen: bool) -> Option<SurfaceHit> {
         let ground = self.model.ground.as_ref()?;
         let t = (ground.height - ray.origin.z) / ray.direction.z;
         let point = ray.at(t);
@@ -433,7 +432,10 @@ impl<'a> World<'a> {
             cost: 0.0,
             level: 0,
             tip: 0,
-            pattern: self.ground.as_ref().map_or(0.0, |pattern| pattern.at(point)),
+            pattern: match (&self.ground, &ground.material.pattern) {
+                (Some(pattern), _) if seen => pattern.at(point),
+                (_, pattern) => pattern.map_or(0.0, |pattern| pattern.figure().mean()),
+            },
             is_below: false,
             is_inside: false,
         })
@@ -444,7 +446,7 @@ impl<'a> World<'a> {
         ray: &Ray,
         instance: u32,
         t: f64,
-        entry: Option<Entry>,
+        (entry, seen): (Option<Entry>, bool),
         shape: &LimbShape<'_>,
         (cone, balls): (&RoundCone, [u32; 2]),
     ) -> SurfaceHit {
@@ -457,7 +459,7 @@ impl<'a> World<'a> {
         };
         let [a, b] = balls.map(|i| &shape.limbs.balls[i as usize]);
         let at = if share > 0.0 { 1 } else { 0 };
-        let (pattern, slope) = shape.pattern(balls[at], own.at(t / scale));
+        let (pattern, slope) = shape.pattern(balls[at], own.at(t / scale), seen);
         let flat = against(ray.direction, place.normal(normal));
         // What is not the limb's own inside, seen from within.
         let outwards = if flat.dot(place.normal(normal)) > 0.0 { 1.0 } else { -1.0 };
@@ -483,13 +485,12 @@ impl<'a> World<'a> {
     fn on_mesh(
         &self,
         ray: &Ray,
-        instance: u32,
+        (index, place): (u32, &Standing),
         t: f64,
         id: u32,
         (mesh, pattern): (&Mesh, Option<&Spread>),
     ) -> SurfaceHit {
-        let (index, place) = &self.instances[instance as usize];
-        let object = &self.model.objects[*index as usize];
+        let object = &self.model.objects[index as usize];
         let triangle = triangle(mesh, id as usize);
         let (own, scale) = place.ray(ray);
         let (t, [v, w]) = match triangle.meet(&own) {
@@ -512,8 +513,8 @@ impl<'a> World<'a> {
             normal: towards(ray.direction, flat, normal),
             face: DVec3::ZERO,
             turned: against(ray.direction, normal),
-            object: Some(*index),
-            branch: self.branches[*index as usize],
+            object: Some(index),
+            branch: self.branches[index as usize],
             cost: 0.0,
             level: 0,
             tip: 0,
