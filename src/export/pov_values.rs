@@ -16,9 +16,9 @@ use crate::model::{
 
 /// With more primitives than this the scene takes the objects inline, since `object { Name }` copies a union.
 const MOST_COPIED: usize = 1_000_000;
-/// POV-Ray's normals are to slopes of a pattern as this to 1 (measured; 7.5 for the least of slopes: it adds the whole slope, of which
-/// that across the surface is not one of the surface).
-const BUMP: f64 = 5.0;
+/// A slope of 1 is a normal of so much in POV-Ray: it adds five times the amount times what a pattern is at four points
+/// about a place, a fiftieth away, in their directions, which is four thirds of a fiftieth of the slope.
+const BUMP: f64 = 7.5;
 /// Lights that stand for the sky in the studio look: more take longer, fewer show as separate shadows.
 const DOME: u32 = 96;
 

@@ -61,11 +61,15 @@ impl Model {
         self.sky.at_horizon().mixed(colour, left)
     }
 
-    /// Bytes of its objects in memory.
+    /// Bytes of its objects and its sky in memory.
     #[must_use]
     pub fn bytes(&self) -> usize {
         let bytes = |object: &Object| object.body.bytes() + size_of_val(&object.instances[..]);
-        self.objects.iter().map(bytes).sum()
+        let sky = match &self.sky {
+            Sky::Picture { picture, .. } => size_of_val(picture.pixels()),
+            Sky::Gradient { .. } => 0,
+        };
+        sky + self.objects.iter().map(bytes).sum::<usize>()
     }
 
     /// How many spheres, cones and triangles there are, once for each object.

@@ -21,7 +21,7 @@ impl World<'_> {
         let mut colour = pigment.map(|c| c * own);
         for light in &self.model.lights {
             let (towards, far, shadow) = towards(light, surface.point);
-            if !surface.faces(towards, surface.turned, material) {
+            if !surface.faces(towards, surface.turned, material, shadow) {
                 continue;
             }
             let to_light = Ray { origin: surface.point, direction: towards, near: SHADOW, far };
@@ -75,7 +75,7 @@ impl World<'_> {
                 towards = cone(towards, size * 0.5, u[0], u[1]);
             }
             let facing = surface.normal.dot(towards);
-            if !surface.faces(towards, surface.normal, material) {
+            if !surface.faces(towards, surface.normal, material, shadow) {
                 continue;
             }
             let origin = self.beside(surface, facing);
@@ -125,10 +125,10 @@ impl World<'_> {
 }
 
 impl SurfaceHit {
-    /// Does it show light from this direction, being bumpy as `normal` has it? Light from behind a limb does not come through it.
-    fn faces(&self, towards: DVec3, normal: DVec3, material: &Material) -> bool {
+    /// Does it show light from this direction, being bumpy as `normal` has it? Light with shadows does not come through the limb.
+    fn faces(&self, towards: DVec3, normal: DVec3, material: &Material, shadow: bool) -> bool {
         let facing = normal.dot(towards);
-        material.shows(facing) && facing * self.face.dot(towards) >= 0.0
+        material.shows(facing) && (!shadow || facing * self.face.dot(towards) >= 0.0)
     }
 }
 

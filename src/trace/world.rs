@@ -83,7 +83,8 @@ pub struct SurfaceHit {
     pub normal: DVec3,
     /// The normal of a limb without the relief of its pattern, zero for all else.
     pub face: DVec3,
-    /// As POV-Ray has it: the normal of a smooth mesh is turned to where the ray came from, though its triangle may face there.
+    /// As POV-Ray has it: the normal of a smooth mesh is turned to where the ray came from, though its triangle may face there, and that
+    /// of a rough limb may face away.
     pub turned: DVec3,
     /// The object, or `None` for the ground.
     pub object: Option<u32>,
@@ -142,7 +143,14 @@ impl<'a> LimbShape<'a> {
     }
 }
 
-/// Over this, in units of its size, the slope of a pattern is taken.
+/// Directions about a point, in the limb's coordinates, at whose ends POV-Ray asks for a pattern to find its slope, and how far away
+/// they are in units of its size.
+const PYRAMID: [DVec3; 4] = [
+    DVec3::new(0.942_809_041, -0.333_333_333, 0.0),
+    DVec3::new(-0.471_404_521, -0.333_333_333, 0.816_496_581),
+    DVec3::new(-0.471_404_521, -0.333_333_333, -0.816_496_581),
+    DVec3::new(0.0, 1.0, 0.0),
+];
 const STEP: f64 = 0.02;
 
 impl Laid {
@@ -159,9 +167,10 @@ impl Laid {
         let slope = match height == 0.0 {
             true => DVec3::ZERO,
             false => {
-                let rise = |axis: DVec3| (self.share.at(at + axis * STEP) - share) / STEP;
+                // Of a slope the four add up to four thirds.
+                let rise = PYRAMID.iter().map(|&way| way * self.share.at(at + way * STEP)).sum::<DVec3>();
                 let [x, y, z] = frame.axes;
-                (x * rise(DVec3::X) + y * rise(DVec3::Y) + z * rise(DVec3::Z)) * height
+                (x * rise.x + y * rise.y + z * rise.z) * (height * 0.75 / STEP)
             }
         };
         (mean + (share - mean) * clarity, slope)
@@ -463,14 +472,14 @@ impl<'a> World<'a> {
         let flat = against(ray.direction, place.normal(normal));
         // What is not the limb's own inside, seen from within.
         let outwards = if flat.dot(place.normal(normal)) > 0.0 { 1.0 } else { -1.0 };
-        let rough = place.normal(normal - (slope - normal * slope.dot(normal)));
-        let normal = towards(ray.direction, flat, rough * outwards);
+        let rough = place.normal(normal - slope) * outwards;
+        let normal = towards(ray.direction, flat, rough);
         SurfaceHit {
             t,
             point: ray.at(t),
             normal,
             face: flat,
-            turned: normal,
+            turned: rough,
             object: Some(*index),
             branch: self.branches[*index as usize] + [a, b][at].branch,
             cost: a.cost + (b.cost - a.cost) * share,

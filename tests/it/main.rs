@@ -14,6 +14,7 @@ mod geometry;
 mod growth;
 mod house;
 mod irregular;
+mod lens;
 mod limits;
 mod mutated;
 mod new;
