@@ -5,8 +5,8 @@ use crate::bvh::{Hit, Ray, Triangle, Triangles};
 use crate::math::DVec3;
 use crate::model::{Body, Instance, Mesh, Model, Object, Pose};
 
-/// Objects with more triangles in all their poses are not put into the tree: it would take more memory than it saves time.
-const MOST: usize = 1 << 20;
+/// The tree has no more triangles, of some 100 bytes each while it is built: what is left has a box for each leaf.
+const MOST: usize = 1 << 22;
 
 /// All triangles of posed meshes.
 pub(super) struct PosedTree<'a> {
@@ -33,16 +33,23 @@ pub(super) struct PosedTriangle<'a> {
     pub triangle: u32,
 }
 
-/// Is it in the tree? What casts no shadow is not, since the tree is asked for shadows as a whole.
-pub(super) fn is_in_tree(object: &Object) -> bool {
-    let triangles = triangles(object);
-    object.shadow && triangles > 0 && triangles <= MOST
+/// Which objects are in the tree: as many as it has room for. What casts no shadow is not, since the tree is asked for shadows as a
+/// whole.
+pub(super) fn in_tree(model: &Model) -> Vec<bool> {
+    let mut left = MOST;
+    let mut takes = |object: &Object| {
+        let triangles = triangles(object);
+        let fits = object.shadow && triangles > 0 && triangles <= left;
+        left -= if fits { triangles } else { 0 };
+        fits
+    };
+    model.objects.iter().map(&mut takes).collect()
 }
 
-/// Bytes that its triangles take at their peak.
-pub(super) fn bytes_needed(model: &Model) -> usize {
-    let count = model.objects.iter().filter(|object| is_in_tree(object)).map(triangles).sum();
-    Triangles::bytes_needed(count)
+/// Bytes that the triangles of those in the tree take at their peak.
+pub(super) fn bytes_needed(model: &Model, in_tree: &[bool]) -> usize {
+    let objects = model.objects.iter().zip(in_tree).filter(|(_, is_in)| **is_in);
+    Triangles::bytes_needed(objects.map(|(object, _)| triangles(object)).sum())
 }
 
 /// The triangles of its poses wherever it stands; none of what is not posed.
@@ -52,10 +59,10 @@ fn triangles(object: &Object) -> usize {
 }
 
 impl<'a> PosedTree<'a> {
-    pub fn new(model: &'a Model) -> Self {
+    pub fn new(model: &'a Model, in_tree: &[bool]) -> Self {
         let mut parts: Vec<Part<'a>> = Vec::new();
         let mut count = 0;
-        for (number, object) in (0..).zip(&model.objects).filter(|(_, object)| is_in_tree(object)) {
+        for (number, object) in (0..).zip(&model.objects).filter(|(i, _)| in_tree[*i as usize]) {
             let Body::Posed(mesh, poses) = &object.body else { continue };
             for &instance in &object.instances {
                 parts.push(Part { first: count, object: number, mesh, poses, instance });

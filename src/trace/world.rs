@@ -239,7 +239,8 @@ impl<'a> World<'a> {
     /// Bytes that the trees over `model` take at their peak.
     #[must_use]
     pub fn bytes_needed(model: &Model) -> u64 {
-        let of = |object: &Object| {
+        let in_tree = posed::in_tree(model);
+        let of = |(object, is_in_tree): (&Object, &bool)| {
             let shapes = match &object.body {
                 Body::Limbs(limbs) => {
                     let has_pattern = model.materials[object.material].1.pattern.is_some();
@@ -249,25 +250,27 @@ impl<'a> World<'a> {
                 Body::Mesh(mesh) | Body::Posed(mesh, _) => Triangles::bytes_needed(mesh.triangles.len()),
             };
             let poses = match &object.body {
-                Body::Posed(..) if posed::is_in_tree(object) => 0,
+                Body::Posed(..) if *is_in_tree => 0,
                 Body::Posed(_, poses) => poses.len(),
                 Body::Limbs(_) | Body::Mesh(_) => 1,
             };
             let places = poses * object.instances.len();
             shapes + places * size_of::<(u32, Standing)>() + Boxes::bytes_needed(places)
         };
-        posed::bytes_needed(model) as u64 + model.objects.iter().map(|object| of(object) as u64).sum::<u64>()
+        let each = model.objects.iter().zip(&in_tree).map(|object| of(object) as u64);
+        posed::bytes_needed(model, &in_tree) as u64 + each.sum::<u64>()
     }
 
     /// Puts `model` into trees.
     #[must_use]
     pub fn new(model: &'a Model) -> Self {
         let shapes: Vec<ObjectShape<'_>> = model.objects.iter().map(|object| ObjectShape::new(object, model)).collect();
+        let in_tree = posed::in_tree(model);
         let mut instances: Vec<(u32, Standing)> = Vec::new();
         for (i, object) in (0..).zip(&model.objects) {
             for instance in &object.instances {
                 match &object.body {
-                    Body::Posed(..) if posed::is_in_tree(object) => {}
+                    Body::Posed(..) if in_tree[i as usize] => {}
                     Body::Posed(_, poses) => {
                         instances.extend(poses.iter().map(|pose| (i, Standing::posed(instance, pose))));
                     }
@@ -298,7 +301,17 @@ impl<'a> World<'a> {
         let pattern = model.ground.as_ref().and_then(|ground| ground.material.pattern);
         let ground = pattern.map(|pattern| Spread::new(pattern.figure()));
         let (dome, boxes) = (Dome::new(model), Boxes::new(&boxes));
-        Self { model, dome, shapes, boxes, instances, posed: PosedTree::new(model), ground, branches, off: reach * OFF }
+        Self {
+            model,
+            dome,
+            shapes,
+            boxes,
+            instances,
+            posed: PosedTree::new(model, &in_tree),
+            ground,
+            branches,
+            off: reach * OFF,
+        }
     }
 
     /// The name of each branch as [`SurfaceHit::branch`] counts them: `object.limb`.
