@@ -51,13 +51,16 @@ fn places(
     let share = patches();
     let unit = spec.groves / PATCH;
     let sunk = model.bounds().size().z.max(0.0) * SUNK;
+    // Behind what they are copies of.
+    let middle = model.bounds().centre().truncate();
+    let nearest = spec.from.max(middle.distance(camera.at.truncate()));
     let mut places = Vec::new();
     for spot in spots(camera, spec.apart, spec.to, stream, memory)? {
         let (x, y) = (spot.at.x, spot.at.y);
         let far = spot.at.distance(camera.at.truncate());
         let is_grove = share.at(DVec3::new(x / unit, 1.0, y / unit)) > 1.0 - spec.share;
         let is_on = ground.and_then(|(ground, _)| ground.radius).is_none_or(|radius| spot.at.length() <= radius);
-        if !is_on || !is_grove || !(spec.from..=spec.to).contains(&far) {
+        if !is_on || !is_grove || !(nearest..=spec.to).contains(&far) {
             continue;
         }
         let at = DVec3::new(x, y, ground.map_or(0.0, |(_, heights)| heights.at(x, y)) - sunk);

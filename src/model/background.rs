@@ -7,7 +7,7 @@ use serde::Deserialize;
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BackgroundSpec {
-    /// The nearest ones' distance from the camera, in scene units.
+    /// The nearest ones' distance from the camera, in scene units; none stands nearer than the scene's middle.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub from: f64,
     /// The farthest ones' distance from the camera, in scene units.
