@@ -312,12 +312,13 @@ pub fn read(text: &str, archive: &str) -> World {
             }
             "TextureCoordinates" => {
                 let n = all();
-                assert!(n.len() == 8 && n.chunks(2).all(|st| st == [n[0], 0.0]), "{n:?}");
-                assert!(n[0] >= 0.0 || n[0] == -1.0, "{n:?}");
+                // How far along the limb, and how much of the pattern shows, at each corner.
+                assert!(n.len() == 8 && n.chunks(2).all(|st| st == [n[0], n[1]]), "{n:?}");
+                assert!(n[0] >= 0.0 && (0.0..=1.0).contains(&n[1]), "{n:?}");
             }
             "Atmosphere" => assert_eq!(given.texts[0], "fog", "a shader that every renderer has"),
             "Displacement" | "version" | "Option" | "Display" | "Quantize" | "Exposure" | "PixelSamples"
-            | "PixelFilter" | "ShadingRate" | "MakeShadow" => {}
+            | "PixelFilter" | "ShadingRate" | "DepthOfField" | "MakeShadow" => {}
             _ => panic!("{request} is not in the portable subset"),
         }
         if let Some(primitive) = made {
