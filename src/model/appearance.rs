@@ -1,13 +1,10 @@
 //! Materials, lights, ground and sky.
 
-use std::sync::Arc;
-
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{GrassSpec, Pattern, ReliefSpec, Tips};
+use super::{GrassSpec, Pattern, ReliefSpec, SkyPicture, Tips};
 use crate::math::{Colour, DVec3, Degrees, Point};
-use crate::raster::Panorama;
 
 /// What an object is made of, in the terms of POV-Ray's finish.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
@@ -299,7 +296,7 @@ pub enum Sky {
     /// A picture of all directions.
     Picture {
         /// The picture.
-        picture: Arc<Panorama>,
+        picture: SkyPicture,
         /// Angle about the vertical, in degrees.
         turn: f64,
         /// Its light times this.

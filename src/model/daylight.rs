@@ -1,14 +1,12 @@
 //! Sun and sky of a place, a day and an hour.
 
 use std::f64::consts::{PI, TAU};
-use std::sync::Arc;
 
 use hw_skymodel::rgb::{SkyParams, SkyState};
 
 use super::clouds::Clouds;
-use super::{DaylightSpec, Dome, Light, Sky};
+use super::{DaylightSpec, Dome, Light, Sky, SkyPicture};
 use crate::math::{Colour, DVec3, GOLDEN_ANGLE, from_height, power, solar_direction};
-use crate::raster::Panorama;
 
 /// Why there is no day.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -112,26 +110,31 @@ impl Daylight {
     /// The sky, without the sun. In the studio look it is to the sun what it is in nature.
     #[must_use]
     pub fn sky(&self) -> Sky {
-        let seen = |turn: f64, rise: f64| self.radiance(from_height(libm::sin(rise), turn)).map(|c| c * self.scale);
         // A ground fades into the mean of all directions at the horizon: so does the sky, from the other side.
         let mut haze = [0.0; 3];
         for x in 0..ROWS {
-            let light = seen(TAU * f64::from(x) / f64::from(ROWS), HAZE);
+            let light = self.seen(TAU * f64::from(x) / f64::from(ROWS), HAZE);
             (0..3).for_each(|c| haze[c] += light[c] / f64::from(ROWS));
         }
         let rows = if self.clouds.is_some() { CLOUDY_ROWS } else { ROWS };
-        let picture = Panorama::painted(rows, |turn, rise| {
+        let of = self.clone();
+        let picture = SkyPicture::painted(rows, move |turn, rise| {
             let clear = (rise / HAZE).clamp(0.0, 1.0);
             if clear == 0.0 {
                 return haze.map(|c| c as f32);
             }
-            let light = seen(turn, rise.max(HAZE));
+            let light = of.seen(turn, rise.max(HAZE));
             [0, 1, 2].map(|c| (haze[c] + (light[c] - haze[c]) * clear) as f32)
         });
         // A white surface scatters four fifths, so that what shines by itself is to be as much darker.
         let strength = Light::SUN * SCATTERED;
         let light = Light::SUN / (strength * Dome::STRENGTH);
-        Sky::Picture { picture: Arc::new(picture), turn: 0.0, strength, light }
+        Sky::Picture { picture, turn: 0.0, strength, light }
+    }
+
+    /// What is shown in a direction, by its angle from +x about the vertical and its elevation, in radians.
+    fn seen(&self, turn: f64, rise: f64) -> [f64; 3] {
+        self.radiance(from_height(libm::sin(rise), turn)).map(|c| c * self.scale)
     }
 
     /// Radiance from a direction of length 1 above the horizon.

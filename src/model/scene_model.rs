@@ -66,7 +66,7 @@ impl Model {
     pub fn bytes(&self) -> usize {
         let bytes = |object: &Object| object.body.bytes() + size_of_val(&object.instances[..]);
         let sky = match &self.sky {
-            Sky::Picture { picture, .. } => size_of_val(picture.pixels()),
+            Sky::Picture { picture, .. } => picture.bytes(),
             Sky::Gradient { .. } => 0,
         };
         sky + self.objects.iter().map(bytes).sum::<usize>()

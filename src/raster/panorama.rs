@@ -1,9 +1,13 @@
 //! Environment maps.
 
-use rayon::prelude::*;
+use std::sync::{Mutex, PoisonError};
+use std::thread;
 
 use super::{Channel, Layers};
 use crate::math::DVec3;
+
+/// Parts of a picture that each thread paints, about: those above the horizon take longer.
+const PARTS: usize = 8;
 
 /// An equirectangular environment map in linear light, z up: the top row is +z, the middle column +x, the left and right edges -x,
 /// the column a quarter from the left -y.
@@ -37,7 +41,24 @@ impl Panorama {
     pub fn painted(rows: u32, light: impl Fn(f64, f64) -> [f32; 3] + Sync) -> Self {
         let (width, height) = (2 * rows.max(1), rows.max(1));
         let pixel = |i: u32| light(turn(i % width, width), rise(i / width, height));
-        Self::of(width, height, (0..width * height).into_par_iter().map(pixel).collect())
+        let mut pixels = vec![[0.0; 3]; (width * height) as usize];
+        // On threads of its own: a thread of the pool that waits for it could take up work that waits for it too.
+        let share = pixels.len().div_ceil(rayon::current_num_threads() * PARTS).max(1);
+        let parts = Mutex::new((0_u32..).step_by(share).zip(pixels.chunks_mut(share)));
+        let next = || parts.lock().unwrap_or_else(PoisonError::into_inner).next();
+        let paint = || {
+            while let Some((first, part)) = next() {
+                (first..).zip(part).for_each(|(i, to)| *to = pixel(i));
+            }
+        };
+        thread::scope(|scope| (0..rayon::current_num_threads()).for_each(|_| drop(scope.spawn(paint))));
+        Self::of(width, height, pixels)
+    }
+
+    /// Bytes of one of `rows` rows and twice as many columns.
+    #[must_use]
+    pub fn bytes_of(rows: u32) -> usize {
+        2 * rows as usize * rows as usize * size_of::<[f32; 3]>()
     }
 
     /// Pixels in a row, and rows.

@@ -75,7 +75,7 @@ impl Resolver<'_> {
                 Some(Sky::Gradient { horizon, zenith })
             }
             (None, false, Some(file), None) => {
-                let picture = Arc::new(self.read("sky.file", file, decode_panorama)?);
+                let picture = self.read("sky.file", file, decode_panorama)?.into();
                 Some(Sky::Picture { picture, turn: spec.turn.0, strength: spec.strength.unwrap_or(1.0), light: 1.0 })
             }
             (None, false, None, Some(_)) => daylight.map(Daylight::sky),
