@@ -480,7 +480,7 @@ fn young_values(material: &Material, pattern: &Pattern, id: &str) -> Vec<YoungVa
 }
 
 /// How much the slope of a pattern counts in POV-Ray's terms.
-fn bump(figure: &dyn Figure, clarity: f64) -> Option<String> {
+fn bump(figure: Figure, clarity: f64) -> Option<String> {
     let height = figure.height() * clarity;
     (height != 0.0).then(|| number(height * BUMP, PLAIN))
 }

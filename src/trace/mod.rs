@@ -8,6 +8,7 @@
 mod denoise;
 mod eye;
 mod film;
+mod laid;
 mod natural;
 mod posed;
 mod render;

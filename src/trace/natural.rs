@@ -108,7 +108,7 @@ mod tests {
         let white = Colour([1.0; 3]);
         let ball = Ball { centre: DVec3::Z, radius: 1.0, cost: 0.0, branch: 0, level: 0 };
         let limb = Limbs { balls: vec![ball], ..Limbs::default() };
-        let pattern = Some(Pattern::Bark(pattern::Bark { colour: white, size: 0.1, depth: 0.0 }));
+        let pattern = Some(Pattern::Bark(pattern::Carved { colour: white, size: 0.1, depth: Some(0.0) }));
         let bark = Material { diffuse: 1.0, pattern, ..Material::matt(white) };
         let [least, most] = shown(&furnace(Body::Limbs(limb), bark));
         assert!(least > 0.999 && most < 1.001, "bark: {least} {most}");

@@ -27,6 +27,7 @@ struct Part<'a> {
 /// One triangle of a posed mesh.
 pub(super) struct PosedTriangle<'a> {
     pub object: u32,
+    pub mesh: &'a Mesh,
     pub instance: &'a Instance,
     pub pose: &'a Pose,
     /// Its number in the mesh.
@@ -87,7 +88,13 @@ impl<'a> PosedTree<'a> {
     pub fn triangle(&self, id: u32) -> PosedTriangle<'_> {
         let (part, ..) = of(&self.parts, id as usize);
         let (pose, triangle) = part.split(id as usize);
-        PosedTriangle { object: part.object, instance: &part.instance, pose, triangle: triangle as u32 }
+        PosedTriangle {
+            object: part.object,
+            mesh: part.mesh,
+            instance: &part.instance,
+            pose,
+            triangle: triangle as u32,
+        }
     }
 }
 

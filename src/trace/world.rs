@@ -1,12 +1,12 @@
 //! A model in trees: what a ray meets.
 
+use super::laid::{Laid, Spread};
 use super::posed::{self, PosedTree, PosedTriangle};
 use super::standing::Standing;
 use crate::bvh::{Boxes, Cones, Entry, Hit, Ray, RoundCone, Triangle, Triangles};
 use crate::geom::Bounds;
 use crate::math::DVec3;
-use crate::model::pattern::{Expr, Figure};
-use crate::model::{Body, Dome, LimbFrame, Limbs, Mesh, Model, Object, Pattern, Tips, limb_frames};
+use crate::model::{Body, Dome, LimbFrame, Limbs, Mesh, Model, Object, Tips};
 
 /// Rays from surfaces start this far off them, as a share of the world's size: more than single precision loses.
 const OFF: f64 = 2e-5;
@@ -23,6 +23,8 @@ pub struct World<'a> {
     boxes: Boxes,
     /// Leaves and what else is posed; not among the instances.
     posed: PosedTree<'a>,
+    /// The patterns of objects without limbs, by object.
+    spread: Vec<Option<Spread>>,
     /// The ground's pattern.
     ground: Option<Spread>,
     /// The first number of each object's branches among all.
@@ -34,7 +36,7 @@ pub struct World<'a> {
 /// An object in its own space.
 enum ObjectShape<'a> {
     Limbs(LimbShape<'a>),
-    Mesh(&'a Mesh, Triangles, Option<Spread>),
+    Mesh(&'a Mesh, Triangles),
 }
 
 /// Round cones.
@@ -45,31 +47,6 @@ struct LimbShape<'a> {
     lone: Vec<u32>,
     pattern: Option<Laid>,
     tips: Option<Tips>,
-}
-
-/// A pattern laid along limbs.
-struct Laid {
-    pattern: Pattern,
-    share: Expr,
-    /// The axes of the limb at each ball.
-    frames: Vec<LimbFrame>,
-}
-
-/// A pattern over what has no limbs.
-struct Spread {
-    share: Expr,
-    size: f64,
-}
-
-impl Spread {
-    fn new(figure: &dyn Figure) -> Self {
-        Self { share: figure.share(), size: figure.size() }
-    }
-
-    /// Its share at a place, which exporters have with y up.
-    fn at(&self, p: DVec3) -> f64 {
-        self.share.at(DVec3::new(p.x, p.z, p.y) / self.size)
-    }
 }
 
 /// What a ray met.
@@ -132,66 +109,17 @@ impl<'a> LimbShape<'a> {
         let [from, to] = [a, b].map(|i| &self.limbs.balls[i as usize]);
         (RoundCone { a: from.centre, ra: from.radius, b: to.centre, rb: to.radius }, [a, b])
     }
-
-    /// The share of the pattern at `p`, on the limb of a ball, and which way it rises there, by how much.
-    fn pattern(&self, ball: u32, p: DVec3, seen: bool) -> (f64, DVec3) {
-        let Some(laid) = &self.pattern else { return (0.0, DVec3::ZERO) };
-        if !seen {
-            return (laid.pattern.figure().mean(), DVec3::ZERO);
-        }
-        laid.at(self.limbs.balls[ball as usize].radius, &laid.frames[ball as usize], p)
-    }
-}
-
-/// Directions about a point, in the limb's coordinates, at whose ends POV-Ray asks for a pattern to find its slope, and how far away
-/// they are in units of its size.
-const PYRAMID: [DVec3; 4] = [
-    DVec3::new(0.942_809_041, -0.333_333_333, 0.0),
-    DVec3::new(-0.471_404_521, -0.333_333_333, 0.816_496_581),
-    DVec3::new(-0.471_404_521, -0.333_333_333, -0.816_496_581),
-    DVec3::new(0.0, 1.0, 0.0),
-];
-const STEP: f64 = 0.02;
-
-impl Laid {
-    /// The pattern's share on a limb of this radius, and the slope of its height.
-    fn at(&self, radius: f64, frame: &LimbFrame, p: DVec3) -> (f64, DVec3) {
-        let figure = self.pattern.figure();
-        let (mean, clarity) = (figure.mean(), figure.clarity(radius));
-        if clarity == 0.0 {
-            return (mean, DVec3::ZERO);
-        }
-        let at = frame.local(p) / figure.size();
-        let share = self.share.at(at);
-        let height = figure.height() * clarity;
-        let slope = match height == 0.0 {
-            true => DVec3::ZERO,
-            false => {
-                // Of a slope the four add up to four thirds.
-                let rise = PYRAMID.iter().map(|&way| way * self.share.at(at + way * STEP)).sum::<DVec3>();
-                let [x, y, z] = frame.axes;
-                (x * rise.x + y * rise.y + z * rise.z) * (height * 0.75 / STEP)
-            }
-        };
-        (mean + (share - mean) * clarity, slope)
-    }
 }
 
 impl<'a> ObjectShape<'a> {
     fn new(object: &'a Object, model: &Model) -> Self {
         match &object.body {
             Body::Limbs(limbs) => {
-                let pattern = model.materials[object.material].1.pattern.map(|pattern| Laid {
-                    pattern,
-                    share: pattern.figure().share(),
-                    frames: limb_frames(limbs),
-                });
+                let pattern = model.materials[object.material].1.pattern.map(|pattern| Laid::new(pattern, limbs));
                 Self::Limbs(LimbShape::new(limbs, pattern, model.materials[object.material].1.tips))
             }
             Body::Mesh(mesh) | Body::Posed(mesh, _) => {
-                let pattern = model.materials[object.material].1.pattern;
-                let figure = pattern.as_ref().map(Pattern::figure).filter(|figure| !figure.follows_limbs());
-                Self::Mesh(mesh, Triangles::new(mesh.triangles.len(), |i| triangle(mesh, i)), figure.map(Spread::new))
+                Self::Mesh(mesh, Triangles::new(mesh.triangles.len(), |i| triangle(mesh, i)))
             }
         }
     }
@@ -199,21 +127,21 @@ impl<'a> ObjectShape<'a> {
     fn bounds(&self) -> Bounds {
         match self {
             Self::Limbs(limbs) => limbs.cones.bounds(),
-            Self::Mesh(_, triangles, _) => triangles.bounds(),
+            Self::Mesh(_, triangles) => triangles.bounds(),
         }
     }
 
     fn closest(&self, ray: &Ray) -> Option<Hit> {
         match self {
             Self::Limbs(limbs) => limbs.cones.closest(ray),
-            Self::Mesh(_, triangles, _) => triangles.closest(ray),
+            Self::Mesh(_, triangles) => triangles.closest(ray),
         }
     }
 
     fn is_blocked(&self, ray: &Ray) -> bool {
         match self {
             Self::Limbs(limbs) => limbs.cones.is_blocked(ray),
-            Self::Mesh(_, triangles, _) => triangles.is_blocked(ray),
+            Self::Mesh(_, triangles) => triangles.is_blocked(ray),
         }
     }
 }
@@ -298,8 +226,9 @@ impl<'a> World<'a> {
             .collect();
         let size = model.bounds();
         let reach = if size.is_empty() { 1.0 } else { size.min.abs().max(size.max.abs()).max_element() };
-        let pattern = model.ground.as_ref().and_then(|ground| ground.material.pattern);
-        let ground = pattern.map(|pattern| Spread::new(pattern.figure()));
+        let pattern = |object: &Object| model.materials[object.material].1.pattern;
+        let spread = model.objects.iter().map(|object| pattern(object).map(Spread::on_mesh)).collect();
+        let ground = model.ground.as_ref().and_then(|ground| ground.material.pattern).map(Spread::on_ground);
         let (dome, boxes) = (Dome::new(model), Boxes::new(&boxes));
         Self {
             model,
@@ -308,6 +237,7 @@ impl<'a> World<'a> {
             boxes,
             instances,
             posed: PosedTree::new(model, &in_tree),
+            spread,
             ground,
             branches,
             off: reach * OFF,
@@ -381,26 +311,15 @@ impl<'a> World<'a> {
 
     /// The surface of a hit in the tree of posed meshes.
     fn on_leaf(&self, ray: &Ray, t: f64, id: u32, seen: bool) -> SurfaceHit {
-        let PosedTriangle { object, instance, pose, triangle } = self.posed.triangle(id);
-        let ObjectShape::Mesh(mesh, _, pattern) = &self.shapes[object as usize] else {
-            unreachable!("what is posed is a mesh")
-        };
-        self.on_mesh(
-            ray,
-            (object, &Standing::posed(instance, pose)),
-            t,
-            triangle,
-            (mesh, pattern.as_ref().filter(|_| seen)),
-        )
+        let PosedTriangle { object, mesh, instance, pose, triangle } = self.posed.triangle(id);
+        self.on_mesh(ray, (object, &Standing::posed(instance, pose)), t, (mesh, triangle), seen)
     }
 
     /// The surface of a hit.
     fn surface(&self, ray: &Ray, instance: u32, t: f64, id: u32, seen: bool) -> SurfaceHit {
         let (object, place) = &self.instances[instance as usize];
         match &self.shapes[*object as usize] {
-            ObjectShape::Mesh(mesh, _, pattern) => {
-                self.on_mesh(ray, (*object, place), t, id, (mesh, pattern.as_ref().filter(|_| seen)))
-            }
+            ObjectShape::Mesh(mesh, _) => self.on_mesh(ray, (*object, place), t, (mesh, id), seen),
             ObjectShape::Limbs(shape) => {
                 let (own, _) = place.ray(ray);
                 let (cone, balls) = shape.cone(id);
@@ -454,10 +373,7 @@ impl<'a> World<'a> {
             cost: 0.0,
             level: 0,
             tip: 0,
-            pattern: match (&self.ground, &ground.material.pattern) {
-                (Some(pattern), _) if seen => pattern.at(point),
-                (_, pattern) => pattern.map_or(0.0, |pattern| pattern.figure().mean()),
-            },
+            pattern: self.ground.as_ref().map_or(0.0, |pattern| pattern.at(point, seen)),
             is_below: false,
             is_inside: false,
         })
@@ -481,7 +397,9 @@ impl<'a> World<'a> {
         };
         let [a, b] = balls.map(|i| &shape.limbs.balls[i as usize]);
         let at = if share > 0.0 { 1 } else { 0 };
-        let (pattern, slope) = shape.pattern(balls[at], own.at(t / scale), seen);
+        let radius = shape.limbs.balls[balls[at] as usize].radius;
+        let laid = shape.pattern.as_ref().map(|laid| laid.at(balls[at], radius, own.at(t / scale), seen));
+        let (pattern, slope) = laid.unwrap_or_default();
         let flat = against(ray.direction, place.normal(normal));
         // What is not the limb's own inside, seen from within.
         let outwards = if flat.dot(place.normal(normal)) > 0.0 { 1.0 } else { -1.0 };
@@ -509,10 +427,9 @@ impl<'a> World<'a> {
         ray: &Ray,
         (index, place): (u32, &Standing),
         t: f64,
-        id: u32,
-        (mesh, pattern): (&Mesh, Option<&Spread>),
+        (mesh, id): (&Mesh, u32),
+        seen: bool,
     ) -> SurfaceHit {
-        let object = &self.model.objects[index as usize];
         let triangle = triangle(mesh, id as usize);
         let (own, scale) = place.ray(ray);
         let (t, [v, w]) = match triangle.meet(&own) {
@@ -540,11 +457,7 @@ impl<'a> World<'a> {
             cost: 0.0,
             level: 0,
             tip: 0,
-            // It has no limbs that a pattern could follow.
-            pattern: match pattern {
-                Some(pattern) => pattern.at(own.at(t / scale)),
-                None => self.model.materials[object.material].1.pattern.map_or(0.0, |p| p.figure().mean()),
-            },
+            pattern: self.spread[index as usize].as_ref().map_or(0.0, |pattern| pattern.at(own.at(t / scale), seen)),
             is_below: flat.dot(ray.direction) > 0.0,
             is_inside: false,
         }

@@ -1,30 +1,7 @@
 //! Bark: fissures that run along the limb.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 use super::expr::{Expr, Wave, waves};
-use super::figure::Figure;
-use crate::math::Colour;
-
-/// Fissures that run along the limb and part and meet again.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Bark {
-    /// Colour of the fissures.
-    pub colour: Colour,
-    /// Distance from fissure to fissure, in scene units; thinner limbs have none.
-    #[schemars(range(min = 1e-6, max = 1e6))]
-    pub size: f64,
-    /// How deep fissures are, in sizes.
-    #[serde(default = "depth")]
-    #[schemars(range(min = 0.0, max = 5.0))]
-    pub depth: f64,
-}
-
-fn depth() -> f64 {
-    0.15
-}
+use super::figure::Kind;
 
 /// Fissures are where this sum is near 0: nets drawn out along the limb.
 const NET: [Wave; 4] = [
@@ -36,32 +13,8 @@ const NET: [Wave; 4] = [
 /// How narrow fissures are.
 const FISSURE: f64 = 0.9;
 
-impl Figure for Bark {
-    fn name(&self) -> &'static str {
-        "bark"
-    }
+pub(super) const BARK: Kind = Kind { name: "bark", least: 1.5, height: -0.15, mean: 0.3, follows_limbs: true, share };
 
-    fn colour(&self) -> Colour {
-        self.colour
-    }
-
-    fn size(&self) -> f64 {
-        self.size
-    }
-
-    fn least_radius(&self) -> f64 {
-        self.size * 1.5
-    }
-
-    fn height(&self) -> f64 {
-        -self.depth
-    }
-
-    fn mean(&self) -> f64 {
-        0.3
-    }
-
-    fn share(&self) -> Expr {
-        Expr::from(0.0).max(Expr::from(1.0) - waves(&NET).abs() * FISSURE)
-    }
+fn share() -> Expr {
+    Expr::from(0.0).max(Expr::from(1.0) - waves(&NET).abs() * FISSURE)
 }

@@ -1,22 +1,7 @@
 //! Moss on the upper side of limbs.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 use super::expr::{Expr, Wave, waves};
-use super::figure::Figure;
-use crate::math::Colour;
-
-/// Moss on the upper side of the limb.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Moss {
-    /// Colour of the moss.
-    pub colour: Colour,
-    /// Size of its patches, in scene units.
-    #[schemars(range(min = 1e-6, max = 1e6))]
-    pub size: f64,
-}
+use super::figure::Kind;
 
 /// Moss is where the upper side's share and this sum are above a threshold.
 const PATCHES: [Wave; 3] = [
@@ -29,35 +14,11 @@ const PATCH: f64 = 0.3;
 const UPPER: f64 = 0.9;
 const LEAST: f64 = 0.45;
 
-impl Figure for Moss {
-    fn name(&self) -> &'static str {
-        "moss"
-    }
+/// A cushion, which is there or not: thin limbs have it as thick ones do.
+pub(super) const MOSS: Kind = Kind { name: "moss", least: 0.0, height: 0.2, mean: 0.0, follows_limbs: true, share };
 
-    fn colour(&self) -> Colour {
-        self.colour
-    }
-
-    fn size(&self) -> f64 {
-        self.size
-    }
-
-    fn least_radius(&self) -> f64 {
-        0.0
-    }
-
-    /// A cushion.
-    fn height(&self) -> f64 {
-        0.2
-    }
-
-    fn mean(&self) -> f64 {
-        0.0
-    }
-
-    fn share(&self) -> Expr {
-        let across = Expr::from(1e-6).max((Expr::X * Expr::X + Expr::Z * Expr::Z).sqrt());
-        let share = waves(&PATCHES) * PATCH + Expr::X / across * UPPER - LEAST;
-        share.share()
-    }
+fn share() -> Expr {
+    let across = Expr::from(1e-6).max((Expr::X * Expr::X + Expr::Z * Expr::Z).sqrt());
+    let share = waves(&PATCHES) * PATCH + Expr::X / across * UPPER - LEAST;
+    share.share()
 }

@@ -1,22 +1,7 @@
 //! Patches of another colour, of several sizes.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 use super::expr::{Expr, Wave, waves};
-use super::figure::Figure;
-use crate::math::Colour;
-
-/// Patches of another colour, of several sizes, that run into each other: soil, meadows, stained stone.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Mottle {
-    /// The other colour.
-    pub colour: Colour,
-    /// Size of its larger patches, in scene units.
-    #[schemars(range(min = 1e-6, max = 1e6))]
-    pub size: f64,
-}
+use super::figure::Kind;
 
 /// The larger patches, and smaller ones of about a third and a tenth of their size. No two waves have a common period.
 const LARGE: [Wave; 3] = [
@@ -35,34 +20,11 @@ const SMALLEST: [Wave; 2] = [
 /// How much the sum of each counts.
 const WEIGHTS: [f64; 3] = [0.16, 0.13, 0.08];
 
-impl Figure for Mottle {
-    fn name(&self) -> &'static str {
-        "mottle"
-    }
+pub(super) const MOTTLE: Kind =
+    Kind { name: "mottle", least: 0.0, height: 0.0, mean: 0.5, follows_limbs: false, share };
 
-    fn colour(&self) -> Colour {
-        self.colour
-    }
-
-    fn size(&self) -> f64 {
-        self.size
-    }
-
-    fn least_radius(&self) -> f64 {
-        0.0
-    }
-
-    fn mean(&self) -> f64 {
-        0.5
-    }
-
-    fn share(&self) -> Expr {
-        patches()
-    }
-
-    fn follows_limbs(&self) -> bool {
-        false
-    }
+fn share() -> Expr {
+    patches()
 }
 
 /// The larger patches are about so many units wide.
@@ -89,7 +51,7 @@ mod tests {
     /// Each colour has its share, and where one is changes from patch to patch.
     #[test]
     fn both_colours_are_there_alike() {
-        let share = Mottle { colour: Colour([0.0; 3]), size: 1.0 }.share();
+        let share = patches();
         let row = |y: f64| (0..200).map(move |x| (f64::from(x) * 0.37, y));
         let all: Vec<f64> =
             (0..200).flat_map(|y| row(f64::from(y) * 0.41)).map(|(x, z)| share.at(DVec3::new(x, 0.0, z))).collect();

@@ -1,30 +1,7 @@
 //! Plates: bark that breaks into scales, as that of old pines, planes and pears.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 use super::expr::{Expr, Wave, waves};
-use super::figure::Figure;
-use crate::math::Colour;
-
-/// Bark that breaks into plates, longer than they are wide.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Plates {
-    /// Colour of the cracks between plates.
-    pub colour: Colour,
-    /// Width of a plate, in scene units; thinner limbs have none.
-    #[schemars(range(min = 1e-6, max = 1e6))]
-    pub size: f64,
-    /// How deep cracks are, in sizes.
-    #[serde(default = "depth")]
-    #[schemars(range(min = 0.0, max = 5.0))]
-    pub depth: f64,
-}
-
-fn depth() -> f64 {
-    0.15
-}
+use super::figure::Kind;
 
 /// Cracks along the limb are where the first sum is near 0, those across it where the second is.
 const ALONG: [Wave; 3] = [
@@ -39,34 +16,10 @@ const ACROSS: [Wave; 2] = [
 /// How narrow both are.
 const CRACK: [f64; 2] = [2.0, 2.6];
 
-impl Figure for Plates {
-    fn name(&self) -> &'static str {
-        "plates"
-    }
+pub(super) const PLATES: Kind =
+    Kind { name: "plates", least: 1.2, height: -0.15, mean: 0.28, follows_limbs: true, share };
 
-    fn colour(&self) -> Colour {
-        self.colour
-    }
-
-    fn size(&self) -> f64 {
-        self.size
-    }
-
-    fn least_radius(&self) -> f64 {
-        self.size * 1.2
-    }
-
-    fn height(&self) -> f64 {
-        -self.depth
-    }
-
-    /// The mean of 200,000 places.
-    fn mean(&self) -> f64 {
-        0.28
-    }
-
-    fn share(&self) -> Expr {
-        let crack = |sum: Expr, narrow: f64| Expr::from(1.0) - sum.abs() * narrow;
-        Expr::from(0.0).max(crack(waves(&ALONG), CRACK[0]).max(crack(waves(&ACROSS), CRACK[1])))
-    }
+fn share() -> Expr {
+    let crack = |sum: Expr, narrow: f64| Expr::from(1.0) - sum.abs() * narrow;
+    Expr::from(0.0).max(crack(waves(&ALONG), CRACK[0]).max(crack(waves(&ACROSS), CRACK[1])))
 }

@@ -1,30 +1,7 @@
 //! Rings: scars all around a stem, as leaves leave on palms.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 use super::expr::{Expr, Wave, waves};
-use super::figure::Figure;
-use crate::math::Colour;
-
-/// Scars all around the stem.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Rings {
-    /// Colour of the scars.
-    pub colour: Colour,
-    /// Distance from ring to ring along the stem, in scene units; stems thinner than half of it have none.
-    #[schemars(range(min = 1e-6, max = 1e6))]
-    pub size: f64,
-    /// How deep scars are, in sizes.
-    #[serde(default = "depth")]
-    #[schemars(range(min = 0.0, max = 5.0))]
-    pub depth: f64,
-}
-
-fn depth() -> f64 {
-    0.12
-}
+use super::figure::Kind;
 
 /// No ring is level all around, nor as far from the next as others.
 const UNEVEN: [Wave; 2] = [
@@ -36,34 +13,10 @@ const BEND: f64 = 0.6;
 const SHARP: f64 = 2.2;
 const LEAST: f64 = 0.5;
 
-impl Figure for Rings {
-    fn name(&self) -> &'static str {
-        "rings"
-    }
+pub(super) const RINGS: Kind =
+    Kind { name: "rings", least: 0.5, height: -0.12, mean: 0.26, follows_limbs: true, share };
 
-    fn colour(&self) -> Colour {
-        self.colour
-    }
-
-    fn size(&self) -> f64 {
-        self.size
-    }
-
-    fn least_radius(&self) -> f64 {
-        self.size * 0.5
-    }
-
-    fn height(&self) -> f64 {
-        -self.depth
-    }
-
-    /// The mean of 200,000 places.
-    fn mean(&self) -> f64 {
-        0.26
-    }
-
-    fn share(&self) -> Expr {
-        let turns = Expr::from(std::f64::consts::TAU) * Expr::Y + waves(&UNEVEN) * BEND;
-        ((turns.sin() - LEAST) * SHARP).share()
-    }
+fn share() -> Expr {
+    let turns = Expr::from(std::f64::consts::TAU) * Expr::Y + waves(&UNEVEN) * BEND;
+    ((turns.sin() - LEAST) * SHARP).share()
 }
